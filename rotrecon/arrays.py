@@ -1,0 +1,21 @@
+"""The array types that stages pass to each other, and how they are made read-only."""
+
+from typing import Any
+
+import numpy as np
+from numpy.typing import NDArray
+
+Floats = NDArray[np.float64]
+"""Positions, directions, poses and results."""
+Cloud = NDArray[np.float32]
+"""Clouds and depth maps: a sensor's digits, at half the memory."""
+Bools = NDArray[np.bool_]
+Indices = NDArray[np.int32]
+Bytes = NDArray[np.uint8]
+
+
+def freeze(record: Any) -> None:
+    """Make every array held by a frozen dataclass read-only; called from its `__post_init__`."""
+    for value in vars(record).values():
+        if isinstance(value, np.ndarray):
+            value.flags.writeable = False

@@ -1,0 +1,105 @@
+"""What was recorded: one frame whose depth is known, or several views that still have to be matched."""
+
+from dataclasses import dataclass
+from datetime import datetime
+
+import numpy as np
+
+from rotrecon.arrays import Bytes, Cloud, Floats, freeze
+from rotrecon.camera import IDENTITY_POSE, PinholeCamera
+from rotrecon.workspace import Workspace
+
+
+@dataclass(frozen=True)
+class StereoNoise:
+    """A stereo camera errs in disparity, by the same amount at every depth."""
+
+    baseline_m: float
+    disparity_sigma_px: float
+
+    def sigma_m(self, depth_m: Floats | Cloud, focal_px: float) -> Floats:
+        """Standard deviation of depth: z^2 sigma_d / (f b)."""
+        depth = np.asarray(depth_m, dtype=np.float64)
+        return depth**2 * self.disparity_sigma_px / (focal_px * self.baseline_m)
+
+
+@dataclass(frozen=True)
+class DepthCameraNoise:
+    """A depth camera whose error has a floor and grows with the square of depth."""
+
+    sigma0_m: float
+    sigma2_per_m: float
+
+    def sigma_m(self, depth_m: Floats | Cloud, focal_px: float) -> Floats:
+        """Standard deviation of depth: sigma0 + sigma2 z^2."""
+        depth = np.asarray(depth_m, dtype=np.float64)
+        return self.sigma0_m + self.sigma2_per_m * depth**2
+
+
+DepthNoise = StereoNoise | DepthCameraNoise
+
+
+@dataclass(frozen=True, eq=False)
+class Frame:
+    """A picture with an organised cloud behind it; every pixel coordinate in the program is one of this picture."""
+
+    image: Bytes
+    """(height, width, 3) RGB."""
+    points_m: Cloud
+    """(height, width, 3) float32 in camera coordinates; NaN in all three where there is no depth."""
+    camera: PinholeCamera
+    T_base_camera: Floats = IDENTITY_POSE
+    """(4, 4) rigid."""
+    noise: DepthNoise | None = None
+    """None where the scene does not state it."""
+    workspace: Workspace = Workspace()
+    captured_at: datetime | None = None
+
+    def __post_init__(self) -> None:
+        freeze(self)
+
+    @property
+    def depth_m(self) -> Cloud:
+        """(height, width) depth along z; NaN where there is none. A view into `points_m`."""
+        return self.points_m[..., 2]
+
+
+@dataclass(frozen=True, eq=False)
+class View:
+    """One undistorted picture from a known pose, not yet matched with another."""
+
+    image: Bytes
+    """(height, width, 3) RGB."""
+    camera: PinholeCamera
+    T_base_camera: Floats
+    """(4, 4) rigid."""
+
+    def __post_init__(self) -> None:
+        freeze(self)
+
+
+@dataclass(frozen=True)
+class FrameUnavailable:
+    """Why a capture cannot be turned into a frame, and what would help."""
+
+    reason: str
+
+
+@dataclass(frozen=True, eq=False)
+class Capture:
+    """A recording as it was read: either `recorded` is a frame, or `views` are two or more."""
+
+    name: str
+    recorded: Frame | None = None
+    views: tuple[View, ...] = ()
+    notes: tuple[str, ...] = ()
+    """What a reader should know of how it was made, such as intrinsics that had to be recovered."""
+
+    def frame(self) -> Frame | FrameUnavailable:
+        """The frame to measure in: the recorded one; views need stereo matching, which this version has not."""
+        if self.recorded is not None:
+            return self.recorded
+        return FrameUnavailable(
+            f"{self.name} holds {len(self.views)} views and needs stereo matching, which this version cannot do; "
+            "open a scene whose depth is recorded"
+        )

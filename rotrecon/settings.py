@@ -1,0 +1,38 @@
+"""Every threshold of the program, with its unit and the reason for its value."""
+
+from dataclasses import dataclass, field
+from typing import Literal
+
+from rotrecon.tools import ToolTable, default_tools
+
+Method = Literal["paper"]
+
+
+@dataclass(frozen=True)
+class Settings:
+    """What a result depends on besides the frame and the drawing."""
+
+    method: Method = "paper"
+    layers: int = 2
+    """Objects that overlap in depth inside the area: steps 1 to 3 of paper 3.2 run one time fewer."""
+    sigma_factor: float = 3.0
+    """Standard deviations a pixel may lie from its section's mean, or from its neighbour: paper (3), (4), (5)."""
+    line_density: float = 0.3
+    """T_d of paper (6): smallest share of segmented pixels among a longitudinal line's pixels with depth."""
+    line_coverage: float = 1.01
+    """T_de of paper (6): above 1, the share of pixels with depth never saves a line (see ERRATA of the paper)."""
+    minimum_section_pixels: int = 5
+    """Fewer pixels do not make an arc whose middle and ends are different things."""
+    minimum_bulge: float = 0.02
+    """Height of a section's arc over its chord below which three points are called collinear; a 9 degree arc."""
+    minimum_sections: int = 4
+    """A line, a cone or a sphere through fewer circles would be held by nothing."""
+    distance_floor_m: float = 5e-6
+    """Deviations below this are rounding, not error: without it exact data would lose every centre."""
+    pixel_step_px: float = 1.0
+    """Distance between cross segments and between the pixels of one: every pixel of the frame once."""
+    rod_length_over_diameter: float = 8.0
+    """A cylinder at least this long for its diameter, and thin, is a rod (paper table 1: extended, thin)."""
+    rod_diameter_m: float = 0.030
+    """Thickest rod: between the paper's wire (25 mm) and its chair leg (36 mm)."""
+    tools: ToolTable = field(default_factory=default_tools)

@@ -1,0 +1,40 @@
+"""What the arm can reach: the pre-selection of points before anything else is done (paper 3)."""
+
+from dataclasses import dataclass
+
+import numpy as np
+
+from rotrecon.arrays import Bools, Cloud, Floats, freeze
+from rotrecon.camera import transform
+
+
+@dataclass(frozen=True, eq=False)
+class Workspace:
+    """Limits of the arm and its camera; a limit that is None does not exist."""
+
+    reach_m: tuple[float, float] | None = None
+    """Nearest and farthest distance from the origin of the base."""
+    box_m: Floats | None = None
+    """(2, 3) lowest and highest corner in base coordinates."""
+    depth_m: tuple[float, float] | None = None
+    """Nearest and farthest depth along the camera's z."""
+
+    def __post_init__(self) -> None:
+        freeze(self)
+
+
+def available(points_m: Cloud, T_base_camera: Floats, workspace: Workspace) -> Bools:
+    """Which points (..., 3), in camera coordinates, the arm can use; (...) bool. Points without depth are not."""
+    usable = np.isfinite(points_m[..., 2])
+    if workspace.depth_m is not None:
+        low, high = workspace.depth_m
+        usable &= (points_m[..., 2] >= low) & (points_m[..., 2] <= high)
+    if workspace.reach_m is None and workspace.box_m is None:
+        return usable
+    in_base = transform(T_base_camera, points_m)
+    if workspace.reach_m is not None:
+        distance = np.linalg.norm(in_base, axis=-1)
+        usable &= (distance >= workspace.reach_m[0]) & (distance <= workspace.reach_m[1])
+    if workspace.box_m is not None:
+        usable &= ((in_base >= workspace.box_m[0]) & (in_base <= workspace.box_m[1])).all(axis=-1)
+    return usable
