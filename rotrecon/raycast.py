@@ -1,0 +1,95 @@
+"""Where a ray first meets a solid of revolution or a plane, in the body's own coordinates."""
+
+from dataclasses import dataclass
+
+import numpy as np
+
+from rotrecon.arrays import Bools, Floats
+from rotrecon.primitives import Frustum, Sphere
+
+ON_CAP_M = 1e-9
+"""How near an end a point counts as one of the cap: far above rounding, far below a pixel."""
+
+
+@dataclass(frozen=True)
+class Plane:
+    """The plane z = 0 of its body, without end."""
+
+
+Shape = Frustum | Sphere | Plane
+"""In body coordinates: a solid's middle is the origin and its axis is z."""
+
+
+def first_hit(shape: Shape, origins_m: Floats, directions: Floats) -> Floats:
+    """Ray parameters (N,) of the first surface in front of the origins; infinite where a ray misses.
+
+    Origins and directions are (N, 3) or (3,), in body coordinates; directions need not be unit vectors.
+    """
+    with np.errstate(divide="ignore", invalid="ignore", over="ignore"):
+        if isinstance(shape, Plane):
+            return _positive(-origins_m[..., 2] / directions[..., 2])
+        if isinstance(shape, Sphere):
+            return _sphere_hit(shape, origins_m, directions)
+        return np.minimum(_lateral_hit(shape, origins_m, directions), _cap_hit(shape, origins_m, directions))
+
+
+def outward_normals(shape: Shape, points_m: Floats) -> Floats:
+    """Unit normals (N, 3) at points (N, 3) of the surface, in body coordinates; a plane's is its z axis."""
+    if isinstance(shape, Plane):
+        return np.broadcast_to(np.array([0.0, 0.0, 1.0]), points_m.shape)
+    if isinstance(shape, Sphere):
+        return points_m / shape.radius_m
+    z = points_m[..., 2]
+    on_cap = np.abs(np.abs(z) - shape.length_m / 2) < ON_CAP_M
+    across = np.hypot(points_m[..., 0], points_m[..., 1])
+    normals = points_m.copy()
+    normals[..., 2] = -np.tan(shape.half_angle_rad) * across
+    normals[on_cap] = np.stack([np.zeros_like(z), np.zeros_like(z), np.sign(z)], axis=-1)[on_cap]
+    return normals / np.linalg.norm(normals, axis=-1, keepdims=True)
+
+
+def _sphere_hit(ball: Sphere, origins_m: Floats, directions: Floats) -> Floats:
+    near, far = _roots(
+        (directions**2).sum(axis=-1),
+        (origins_m * directions).sum(axis=-1),
+        (origins_m**2).sum(axis=-1) - ball.radius_m**2,
+    )
+    return np.minimum(_positive(near), _positive(far))
+
+
+def _lateral_hit(solid: Frustum, origins_m: Floats, directions: Floats) -> Floats:
+    """The lateral surface x^2 + y^2 = (radius + slope z)^2 between the two ends."""
+    slope = np.tan(solid.half_angle_rad)
+    radius = solid.radius_m + slope * origins_m[..., 2]
+    growth = slope * directions[..., 2]
+    roots = _roots(
+        directions[..., 0] ** 2 + directions[..., 1] ** 2 - growth**2,
+        origins_m[..., 0] * directions[..., 0] + origins_m[..., 1] * directions[..., 1] - growth * radius,
+        origins_m[..., 0] ** 2 + origins_m[..., 1] ** 2 - radius**2,
+    )
+    hit = np.inf
+    for root in roots:
+        within = np.abs(origins_m[..., 2] + root * directions[..., 2]) <= solid.length_m / 2
+        # the quadratic also describes the mirrored cone beyond the apex, where the radius is negative
+        hit = np.minimum(hit, _positive(root, within & (radius + root * growth >= 0)))
+    return np.asarray(hit)
+
+
+def _cap_hit(solid: Frustum, origins_m: Floats, directions: Floats) -> Floats:
+    hit = np.inf
+    for end_m in solid.ends:
+        root = (end_m - origins_m[..., 2]) / directions[..., 2]
+        x = origins_m[..., 0] + root * directions[..., 0]
+        y = origins_m[..., 1] + root * directions[..., 1]
+        hit = np.minimum(hit, _positive(root, x**2 + y**2 <= solid.radius_at(end_m) ** 2))
+    return np.asarray(hit)
+
+
+def _roots(a: Floats, half_b: Floats, c: Floats) -> tuple[Floats, Floats]:
+    """Both roots of a t^2 + 2 half_b t + c = 0 without cancellation; NaN where there is none."""
+    q = -(half_b + np.copysign(np.sqrt(half_b**2 - a * c), half_b))
+    return q / a, c / q
+
+
+def _positive(root: Floats, allowed: Bools | bool = True) -> Floats:
+    return np.where((root > 0) & allowed, root, np.inf)
