@@ -1,6 +1,6 @@
 """The array types that stages pass to each other, and how they are made read-only."""
 
-from typing import Any
+from typing import Any, cast
 
 import numpy as np
 from numpy.typing import NDArray
@@ -16,6 +16,6 @@ Bytes = NDArray[np.uint8]
 
 def freeze(record: Any) -> None:
     """Make every array held by a frozen dataclass read-only; called from its `__post_init__`."""
-    for value in vars(record).values():
+    for value in cast(dict[str, Any], vars(record)).values():
         if isinstance(value, np.ndarray):
-            value.flags.writeable = False
+            cast(NDArray[Any], value).flags.writeable = False

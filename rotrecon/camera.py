@@ -7,9 +7,6 @@ from numpy.typing import ArrayLike
 
 from rotrecon.arrays import Cloud, Floats, freeze
 
-IDENTITY_POSE: Floats = np.eye(4)
-IDENTITY_POSE.flags.writeable = False
-
 
 @dataclass(frozen=True, eq=False)
 class PinholeCamera:

@@ -1,12 +1,12 @@
 """What was recorded: one frame whose depth is known, or several views that still have to be matched."""
 
-from dataclasses import dataclass
+from dataclasses import dataclass, field
 from datetime import datetime
 
 import numpy as np
 
 from rotrecon.arrays import Bytes, Cloud, Floats, freeze
-from rotrecon.camera import IDENTITY_POSE, PinholeCamera
+from rotrecon.camera import PinholeCamera
 from rotrecon.workspace import Workspace
 
 
@@ -48,7 +48,7 @@ class Frame:
     points_m: Cloud
     """(height, width, 3) float32 in camera coordinates; NaN in all three where there is no depth."""
     camera: PinholeCamera
-    T_base_camera: Floats = IDENTITY_POSE
+    T_base_camera: Floats = field(default_factory=lambda: np.eye(4))
     """(4, 4) rigid."""
     noise: DepthNoise | None = None
     """None where the scene does not state it."""

@@ -5,7 +5,7 @@ from typing import Literal
 
 import numpy as np
 
-from rotrecon.arrays import Floats, freeze
+from rotrecon.arrays import Cloud, Floats, freeze
 from rotrecon.camera import rotate, transform
 
 Kind = Literal["cylinder", "rod", "sphere", "cone", "revolution"]
@@ -51,7 +51,7 @@ class Frustum:
             self.half_angle_rad,
         )
 
-    def distance(self, points_m: Floats) -> Floats:
+    def distance(self, points_m: Floats | Cloud) -> Floats:
         """Signed orthogonal distance (...) of points (..., 3) from the surface, ends unbounded; outside is positive."""
         offset = points_m - self.center_m
         along = offset @ self.direction
@@ -82,11 +82,9 @@ class Sphere:
 
     def moved(self, T_target_source: Floats) -> "Sphere":
         """The same solid in another frame."""
-        return Sphere(
-            transform(T_target_source, self.center_m), rotate(T_target_source, self.direction), self.radius_m
-        )
+        return Sphere(transform(T_target_source, self.center_m), rotate(T_target_source, self.direction), self.radius_m)
 
-    def distance(self, points_m: Floats) -> Floats:
+    def distance(self, points_m: Floats | Cloud) -> Floats:
         """Signed orthogonal distance (...) of points (..., 3) from the surface; outside is positive."""
         return np.linalg.norm(points_m - self.center_m, axis=-1) - self.radius_m
 

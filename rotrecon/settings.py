@@ -29,10 +29,14 @@ class Settings:
     """A line, a cone or a sphere through fewer circles would be held by nothing."""
     distance_floor_m: float = 5e-6
     """Deviations below this are rounding, not error: without it exact data would lose every centre."""
-    pixel_step_px: float = 1.0
-    """Distance between cross segments and between the pixels of one: every pixel of the frame once."""
     rod_length_over_diameter: float = 8.0
     """A cylinder at least this long for its diameter, and thin, is a rod (paper table 1: extended, thin)."""
     rod_diameter_m: float = 0.030
     """Thickest rod: between the paper's wire (25 mm) and its chair leg (36 mm)."""
+    cone_half_angle_rad: float = 0.05
+    """Less taper (3 degrees) is called a cylinder."""
+    sphere_span: float = 0.5
+    """Share of the diameter that the sections of a sphere must cover: less is a cylinder that bulges."""
+    correlated_sections: float = 8.0
+    """Neighbouring sections that err together: errors of matched depth are correlated over 5 to 12 px."""
     tools: ToolTable = field(default_factory=default_tools)

@@ -5,7 +5,6 @@ from dataclasses import dataclass
 import numpy as np
 
 from rotrecon.arrays import Bools, Cloud, Floats, freeze
-from rotrecon.camera import transform
 
 
 @dataclass(frozen=True, eq=False)
@@ -31,7 +30,7 @@ def available(points_m: Cloud, T_base_camera: Floats, workspace: Workspace) -> B
         usable &= (points_m[..., 2] >= low) & (points_m[..., 2] <= high)
     if workspace.reach_m is None and workspace.box_m is None:
         return usable
-    in_base = transform(T_base_camera, points_m)
+    in_base = points_m @ T_base_camera[:3, :3].T.astype(np.float32) + T_base_camera[:3, 3].astype(np.float32)
     if workspace.reach_m is not None:
         distance = np.linalg.norm(in_base, axis=-1)
         usable &= (distance >= workspace.reach_m[0]) & (distance <= workspace.reach_m[1])

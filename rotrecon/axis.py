@@ -1,0 +1,131 @@
+"""The central axis through the section centres, and the sections cut anew perpendicular to it (paper 3.4)."""
+
+from dataclasses import dataclass
+
+import numpy as np
+
+from rotrecon.arrays import Bools, Cloud, Floats, Indices, freeze
+from rotrecon.circles import SectionCircles
+from rotrecon.primitives import basis_across
+from rotrecon.settings import Settings
+
+
+@dataclass(frozen=True, eq=False)
+class Axis:
+    """A line in camera coordinates, pointing the way the operator drew it."""
+
+    point_m: Floats
+    """(3,)"""
+    direction: Floats
+    """(3,) unit."""
+
+    def __post_init__(self) -> None:
+        freeze(self)
+
+    def along(self, points_m: Floats) -> Floats:
+        """Signed distance (...) of points (..., 3) from `point_m` along the axis."""
+        return (points_m - self.point_m) @ self.direction
+
+    def distance(self, points_m: Floats) -> Floats:
+        """Distance (...) of points (..., 3) from the axis."""
+        return np.linalg.norm(np.cross(points_m - self.point_m, self.direction), axis=-1)
+
+
+@dataclass(frozen=True, eq=False)
+class AxisFit:
+    """An axis, and which of the S section centres it rests on."""
+
+    axis: Axis
+    on_axis: Bools
+    """(S,) False where there is no centre, or it lies farther from the axis than the mean."""
+
+    def __post_init__(self) -> None:
+        freeze(self)
+
+
+def fit_axis(circles: SectionCircles, settings: Settings) -> AxisFit | None:
+    """The axis through the centres of the circles.
+
+    Total least squares in space takes the place of the two projections of paper (10), which cannot hold an axis along
+    Oy or Oz. Centres farther than the mean distance, (11) and (12), are dropped once and the line fitted again.
+    None when there are too few circles, or their centres are not drawn out along a line.
+    """
+    used = circles.used
+    if used.sum() < settings.minimum_sections:
+        return None
+    first = _line_through(circles.center_m[used])
+    if first is None:
+        return None
+    distance = first.distance(circles.center_m)
+    limit = max(float(distance[used].mean()), settings.distance_floor_m)
+    on_axis = used & (distance <= limit)
+    second = _line_through(circles.center_m[on_axis])
+    return None if second is None else AxisFit(second, on_axis)
+
+
+def _line_through(centers_m: Floats) -> Axis | None:
+    """Line of total least squares through points (N, 3) in the order of the stroke; None for a round heap of points."""
+    middle = centers_m.mean(axis=0)
+    offset = centers_m - middle
+    spread, vectors = np.linalg.eigh(offset.T @ offset)
+    if spread[2] <= 2 * spread[1]:
+        return None
+    direction = vectors[:, 2]
+    order = np.arange(len(centers_m)) - (len(centers_m) - 1) / 2
+    return Axis(middle, direction if order @ (offset @ direction) >= 0 else -direction)
+
+
+@dataclass(frozen=True, eq=False)
+class SpaceSections:
+    """Segmented points sorted into S sections perpendicular to an axis in space."""
+
+    axis: Axis
+    """The axis they are perpendicular to."""
+    across: Floats
+    """(3,) unit vector of a section's own x; its y points toward the camera."""
+    toward_camera: Floats
+    """(3,) unit."""
+    start: Indices
+    """(S + 1,) section s holds the points from start[s] to start[s + 1]."""
+    pixel: Indices
+    """(M,) index into the flattened frame, ordered by section and by x within it."""
+    points_m: Cloud
+    """(M, 3) camera coordinates."""
+
+    def __post_init__(self) -> None:
+        freeze(self)
+
+    def base_points(self) -> tuple[Floats, Indices]:
+        """First, middle and last point (S, 3, 3) of each section, brought into one plane, and the counts (S,)."""
+        count = np.diff(self.start).astype(np.int32)
+        rank = np.stack([np.zeros_like(count), (count - 1) // 2, count - 1], axis=1)
+        index = np.clip(self.start[:-1, None] + rank, 0, len(self.pixel) - 1)
+        points = self.points_m[index].astype(np.float64)
+        points[count == 0] = np.nan
+        along = self.axis.along(points)
+        shift = along.mean(axis=1, keepdims=True) - along
+        return points + shift[..., None] * self.axis.direction, count
+
+    def points_of(self, sections: Bools) -> Cloud:
+        """Points (n, 3) of the chosen (S,) sections, camera coordinates."""
+        return self.points_m[np.repeat(sections, np.diff(self.start))]
+
+    def in_plane(self, section: int) -> Floats:
+        """Points (n, 2) of one section in its own plane, metres from the axis: across, and toward the camera."""
+        points = self.points_m[self.start[section] : self.start[section + 1]] - self.axis.point_m
+        return np.stack([points @ self.across, points @ self.toward_camera], axis=1)
+
+
+def cut_in_space(points_m: Cloud, pixel: Indices, axis: Axis, ends_m: tuple[float, float], count: int) -> SpaceSections:
+    """Sort points (M, 3) and their pixels (M,) into `count` sections between two distances along the axis."""
+    across, toward_camera = basis_across(axis.direction, -axis.point_m)
+    offset = points_m - axis.point_m.astype(np.float32)
+    low, high = ends_m
+    section = (offset @ axis.direction.astype(np.float32) - low) * (count / (high - low))
+    within = (section >= 0) & (section < count)
+    points_m, pixel, section = points_m[within], pixel[within], section[within].astype(np.int32)
+    x = (offset @ across.astype(np.float32))[within]
+    width = float(np.ptp(x)) if len(x) else 0.0
+    order = np.argsort(section + (x - x.min()) / (1.001 * width + 1e-9)) if len(x) else np.zeros(0, dtype=np.int64)
+    start = np.concatenate([[0], np.bincount(section, minlength=count).cumsum()])
+    return SpaceSections(axis, across, toward_camera, start.astype(np.int32), pixel[order], points_m[order])

@@ -1,0 +1,111 @@
+"""A solid of revolution from its sections, or the reason there is none (paper 3.4, 3.5)."""
+
+from dataclasses import dataclass
+from enum import StrEnum
+
+import numpy as np
+
+from rotrecon.arrays import Bytes, Cloud, Floats, freeze
+from rotrecon.axis import Axis, SpaceSections
+from rotrecon.circles import SectionCircles, SectionState
+from rotrecon.primitives import Frustum, Kind, Primitive, Sphere
+from rotrecon.radii import RadiusFit, axis_length_radius
+from rotrecon.settings import Settings
+
+
+class FailureReason(StrEnum):
+    """Why nothing could be fitted."""
+
+    OUT_OF_REACH = "out_of_reach"
+    FLAT = "flat"
+    TOO_FEW_SECTIONS = "too_few_sections"
+    NO_AXIS = "no_axis"
+    NOT_THIS_KIND = "not_this_kind"
+
+
+@dataclass(frozen=True)
+class FitFailure:
+    """Nothing could be fitted: why, and what the operator can do."""
+
+    reason: FailureReason
+    advice: str
+
+
+@dataclass(frozen=True, eq=False)
+class Fit:
+    """A solid in camera coordinates, and how well the sections it rests on agree with it."""
+
+    solid: Primitive
+    section_state: Bytes
+    """(S,) SectionState of every section of the second cut."""
+    along_m: Floats
+    """(S,) positions of the section centres along the solid's direction, from its middle."""
+    rms_m: float
+    """Orthogonal, over the pixels of the used sections."""
+    arc_rad: float
+    """Median visible arc of the used sections."""
+    concave: bool
+    """The surface is seen from inside."""
+    axis_length_radius_m: float | None = None
+    """Of a sphere: the radius by equation (16), the paper's second variant."""
+
+    def __post_init__(self) -> None:
+        freeze(self)
+
+
+def fit_solid(
+    radii: RadiusFit,
+    kind: Kind | None,
+    axis: Axis,
+    circles: SectionCircles,
+    sections: SpaceSections,
+    settings: Settings,
+) -> Fit:
+    """The solid that a curve through the section radii describes, placed on the axis.
+
+    `kind` None lets a thin cylinder be called a rod. The solid's length is that of the sections it rests on.
+    """
+    state = circles.state.copy()
+    state[circles.used & ~radii.kept] = SectionState.ODD_RADIUS
+    along = axis.along(circles.center_m)
+    used = state == SectionState.USED
+    solid = _solid(radii, kind, axis, along[used], settings)
+    return Fit(
+        solid=solid,
+        section_state=state,
+        along_m=along - float(axis.along(solid.center_m)),
+        rms_m=_rms(solid, sections.points_of(used)),
+        arc_rad=float(np.median(circles.arc_rad[used])),
+        concave=bool(np.median(circles.concave[used]) > 0.5),
+        axis_length_radius_m=axis_length_radius(circles.center_m[used]) if radii.shape == "sphere" else None,
+    )
+
+
+def _solid(radii: RadiusFit, kind: Kind | None, axis: Axis, along: Floats, settings: Settings) -> Primitive:
+    """Geometry of a curve through radii at positions (n,) along the axis."""
+    if radii.shape == "sphere":
+        return Sphere(axis.point_m + radii.center_m * axis.direction, axis.direction, radii.radius_m)
+    low, high = float(along.min()), float(along.max())
+    spacing = (high - low) / max(len(along) - 1, 1)
+    middle, length = (low + high) / 2, high - low + spacing
+    radius = radii.radius_m + radii.slope * middle
+    if radii.shape == "cone":
+        shape: Kind = "cone"
+    elif kind is None:
+        thin = 2 * radius <= settings.rod_diameter_m
+        shape = "rod" if thin and length >= settings.rod_length_over_diameter * 2 * radius else "cylinder"
+    else:
+        shape = kind
+    return Frustum(
+        kind="cone" if shape == "cone" else "rod" if shape == "rod" else "cylinder",
+        center_m=axis.point_m + middle * axis.direction,
+        direction=axis.direction,
+        length_m=length,
+        radius_m=radius,
+        half_angle_rad=float(np.arctan(radii.slope)),
+    )
+
+
+def _rms(solid: Primitive, points_m: Cloud) -> float:
+    """Root mean square of the orthogonal distances of points (M, 3)."""
+    return float(np.sqrt(np.mean(solid.distance(points_m) ** 2)))

@@ -1,0 +1,164 @@
+"""The stages in their order: from a frame and a drawing to a measured solid and the tool that fits it."""
+
+from dataclasses import dataclass, replace
+
+import numpy as np
+
+from rotrecon.arrays import Bools, Cloud, Floats, Indices
+from rotrecon.axis import Axis, AxisFit, SpaceSections, cut_in_space, fit_axis
+from rotrecon.circles import SectionCircles, SectionState, base_points, circumcircles
+from rotrecon.drawing import CrossSegments, Drawing, DrawingError, cut_sections
+from rotrecon.fitting import FailureReason, Fit, FitFailure, fit_solid
+from rotrecon.frame import Frame
+from rotrecon.primitives import Primitive
+from rotrecon.radii import SHAPE_OF_KIND, SHAPES, Shape, fit_radii
+from rotrecon.recognition import Candidate, rank
+from rotrecon.segmentation import Segmentation, segment
+from rotrecon.settings import Settings
+from rotrecon.tools import NoTool, ToolProposal, propose_tool
+from rotrecon.workspace import available
+
+
+@dataclass(frozen=True, eq=False)
+class Cut:
+    """The circles of one cut through the object, and the axis through their centres."""
+
+    circles: SectionCircles
+    axis: AxisFit | None
+
+
+@dataclass(frozen=True, eq=False)
+class Reconstruction:
+    """Every intermediate of one reconstruction, so that whatever is shown computes nothing again.
+
+    Camera coordinates, but for `solid` and `tool`. A stage that was not reached is None.
+    """
+
+    frame: Frame
+    drawing: Drawing
+    settings: Settings
+    segments: CrossSegments
+    segmentation: Segmentation
+    first_cut: Cut
+    """Through lines of pixels, as drawn (paper 3.1)."""
+    fit: Fit | FitFailure
+    sections: SpaceSections | None = None
+    """The same pixels, sorted into sections perpendicular to the first axis in space."""
+    second_cut: Cut | None = None
+    candidates: tuple[Candidate, ...] = ()
+    first_cut_radius_m: float | None = None
+    """The radius that the first cut alone gives for the same kind of solid."""
+    solid: Primitive | None = None
+    """The fitted solid in base coordinates."""
+    tool: ToolProposal | NoTool = NoTool(())
+
+
+def reconstruct(frame: Frame, drawing: Drawing, settings: Settings) -> Reconstruction:
+    """Measure the object that a drawing points at, by the paper's method.
+
+    Raises DrawingError for a drawing that cannot be used on this frame; what the data cannot hold is a FitFailure.
+    """
+    segments = cut_sections(drawing.area, drawing.axis, (frame.camera.width, frame.camera.height))
+    depth_m, usable = _usable_depth(frame, segments)
+    segmentation = segment(depth_m, usable, segments.inside, settings)
+    first = _cut(*base_points(frame.points_m, segments.pixel, segmentation.kept), frozenset(), settings)
+    result = Reconstruction(
+        frame, drawing, settings, segments, segmentation, first, fit=_why_not(first.circles, usable, settings)
+    )
+    if first.axis is None:
+        return result
+    sections = _cut_in_space(frame, segments, segmentation, first.axis, first.circles)
+    second = _cut(*sections.base_points(), drawing.excluded_sections, settings)
+    result = replace(result, sections=sections, second_cut=second, fit=_why_not(second.circles, usable, settings))
+    return result if second.axis is None else _with_solid(result, first, second, second.axis.axis, sections)
+
+
+def _usable_depth(frame: Frame, segments: CrossSegments) -> tuple[Cloud, Bools]:
+    """Depth (S, W) of every cell, and where it is known and within the arm's limits."""
+    depth_m = frame.depth_m.ravel()[segments.pixel]
+    usable = segments.inside & np.isfinite(depth_m)
+    if not usable.any():
+        raise DrawingError("the area holds no depth; draw it where the depth map has values")
+    pixel = segments.pixel[usable]
+    points_m = frame.points_m.reshape(-1, 3)
+    usable[usable] = available(points_m[pixel], frame.T_base_camera, frame.workspace)
+    return depth_m, usable
+
+
+def _cut(points_m: Floats, count: Indices, excluded: frozenset[int], settings: Settings) -> Cut:
+    """Circles through the base points (S, 3, 3) of sections, less the excluded ones, and their axis."""
+    circles = circumcircles(points_m, count, settings)
+    state = circles.state.copy()
+    state[[section for section in excluded if section < len(state)]] = SectionState.EXCLUDED
+    circles = replace(circles, state=state)
+    return Cut(circles, fit_axis(circles, settings))
+
+
+def _cut_in_space(
+    frame: Frame, segments: CrossSegments, segmentation: Segmentation, axis: AxisFit, circles: SectionCircles
+) -> SpaceSections:
+    """The segmented pixels cut anew, in as many sections over the length that the first cut's circles cover."""
+    pixel = segments.pixel[segmentation.kept]
+    along = axis.axis.along(circles.center_m)[circles.used]
+    margin = np.ptp(along) / (2 * len(along))
+    ends = (float(along.min() - margin), float(along.max() + margin))
+    points_m = frame.points_m.reshape(-1, 3)[pixel]
+    return cut_in_space(points_m, pixel, axis.axis, ends, int(np.ptp(np.flatnonzero(circles.used))) + 1)
+
+
+def _with_solid(result: Reconstruction, first: Cut, second: Cut, axis: Axis, sections: SpaceSections) -> Reconstruction:
+    """The reconstruction with its solid, or the reason why the kind asked for does not exist."""
+    circles, settings, kind = second.circles, result.settings, result.drawing.kind
+    along = axis.along(circles.center_m)
+    curves = {shape: fit_radii(shape, along, circles.radius_m, circles.used, settings) for shape in SHAPES}
+    candidates = rank([curve for curve in curves.values() if curve], along, circles.used, settings)
+    shape = candidates[0].radii.shape if kind is None else SHAPE_OF_KIND[kind]
+    radii = curves[shape]
+    if radii is None:
+        advice = f"the sections do not form a {kind}; choose another kind, or let the program decide"
+        return replace(result, candidates=candidates, fit=FitFailure(FailureReason.NOT_THIS_KIND, advice))
+    fit = fit_solid(radii, kind, axis, circles, sections, settings)
+    T_base_camera = result.frame.T_base_camera
+    solid = fit.solid.moved(T_base_camera)
+    return replace(
+        result,
+        candidates=candidates,
+        fit=fit,
+        first_cut_radius_m=_radius_from(first, shape, settings),
+        solid=solid,
+        tool=propose_tool(solid, T_base_camera[:3, 3], fit.concave, settings.tools),
+    )
+
+
+def _radius_from(cut: Cut, shape: Shape, settings: Settings) -> float | None:
+    """The radius, at the middle of its length, that one cut alone gives for a shape."""
+    assert cut.axis is not None
+    along = cut.axis.axis.along(cut.circles.center_m)
+    radii = fit_radii(shape, along, cut.circles.radius_m, cut.circles.used, settings)
+    return None if radii is None else radii.radius_at_middle(along)
+
+
+def _why_not(circles: SectionCircles, usable: Bools, settings: Settings) -> FitFailure:
+    """Why circles hold no axis, in words the operator can act on."""
+    found = int(circles.used.sum())
+    if not usable.any():
+        return FitFailure(
+            FailureReason.OUT_OF_REACH,
+            "everything in the area is outside the arm's limits; move the arm or the limits",
+        )
+    if found >= settings.minimum_sections:
+        return FitFailure(
+            FailureReason.NO_AXIS,
+            "the section centres do not line up; draw the axis along the object, and longer",
+        )
+    with_points = np.isin(circles.state, [SectionState.USED, SectionState.COLLINEAR])
+    if with_points.sum() >= settings.minimum_sections:
+        return FitFailure(
+            FailureReason.FLAT,
+            "the sections are flat; nothing round stands out from its background in this area",
+        )
+    return FitFailure(
+        FailureReason.TOO_FEW_SECTIONS,
+        f"only {found} sections have a circle, {settings.minimum_sections} are needed; draw the axis longer, "
+        "or the area wider, over the object",
+    )
