@@ -1,0 +1,1 @@
+"""Foreign files turned into arrays, one small module a format; every failure is a SceneError."""
