@@ -41,9 +41,10 @@ def read_scene(folder: Path) -> Capture:
     The folder holds `scene.toml` and the files it names, all of them checked.
     """
     file = folder / SCENE_FILE
-    if not file.exists():
+    source = SourceFile(file, SCENE_FILE)
+    if not source.exists:
         raise SceneError(folder, SCENE_FILE, "is missing", "name a scene folder, or make one with rotrecon import")
-    scene = parse_scene(file, SourceFile(file, SCENE_FILE).read_bytes())
+    scene = parse_scene(file, source.read_bytes())
     check_scene(file, scene)
     notes = () if scene.source is None else (f"Source: {scene.source}",)
     if scene.frame is None:

@@ -25,9 +25,17 @@ class SourceFile:
         """The file's ending in lower case, with its dot."""
         return self.path.suffix.lower()
 
+    @property
+    def exists(self) -> bool:
+        """Whether anything of that name can be seen, also where looking is not allowed."""
+        try:
+            return self.path.exists()
+        except OSError:
+            return False
+
     def read_bytes(self) -> bytes:
         """The whole file; raises SceneError when it is missing, not a file or not readable."""
-        if not self.path.exists():
+        if not self.exists:
             raise self.error("names a file that does not exist", "add the file or correct its name")
         if not self.path.is_file():
             raise self.error("names something that is not a file", "name a regular file")
