@@ -63,7 +63,7 @@ def concrete(rng: np.random.Generator) -> Material:
         Octave((0.012, 0.012, 1.0), 0.6),
         Octave((0.005, 0.005, 1.0), 0.5),
     )
-    colours = [(84, 81, 76), (134, 131, 125), (152, 149, 143), (166, 163, 158), (186, 184, 179)]
+    colours = [(104, 101, 96), (138, 135, 129), (152, 149, 143), (166, 163, 158), (186, 184, 179)]
     return NoiseMaterial(octaves, linear_light(colours), rng.random(FLAT_LATTICE, np.float32))
 
 

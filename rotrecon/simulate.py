@@ -34,8 +34,8 @@ BEHIND_M = 0.3
 """Least depth between the object and anything behind it."""
 BORDER_PX = 16.0
 """Least distance of the drawing and the outline from the picture's border: an unsteady hand stays inside."""
-ATTEMPTS = 2000
-"""Poses tried until the object fits the picture; one in ten does in common cameras."""
+ATTEMPTS = 200
+"""Poses tried until the object fits the picture; at least one in three does with the cameras foreseen."""
 
 
 @dataclass(frozen=True)

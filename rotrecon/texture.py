@@ -10,7 +10,7 @@ from rotrecon.arrays import Cloud, Floats, freeze
 
 GAMMA = 2.2
 """Of the display: pictures hold intensity to the power of 1 / 2.2."""
-CONTRAST = 1.5
+CONTRAST = 1.1
 """Brings the sum of octaves, which gathers round its middle, to most of the colour ramp."""
 OCTAVE_SHIFT = 17.37
 """Cells by which octaves are shifted against each other: they share a lattice and must not line up."""
@@ -76,7 +76,7 @@ class Football:
         height = points_m @ _football_faces().T / np.linalg.norm(points_m, axis=-1, keepdims=True)
         face = height.argmax(axis=-1)
         second, best = np.partition(height, -2, axis=-1)[:, -2:].T
-        shade = np.where(face < 12, 0.10, 1.0) * np.where(best - second < 0.012, 0.35, 1.0)
+        shade = np.where(face < 12, 0.10, 1.0) * np.where(best - second < 0.007, 0.35, 1.0)
         return self.leather.albedo(points_m) * shade[:, None]
 
 
