@@ -1,12 +1,13 @@
 """Pictures and exact depth of a world of analytic bodies; a second camera is one more call."""
 
 from dataclasses import dataclass
+from itertools import product
 
 import numpy as np
 from numpy.typing import NDArray
 
 from rotrecon.arrays import Bools, Bytes, Floats, freeze
-from rotrecon.camera import PinholeCamera, inverse, rotate, transform
+from rotrecon.camera import PinholeCamera, inverse, rotate
 from rotrecon.raycast import Plane, Shape, first_hit, outward_normals
 from rotrecon.texture import GAMMA, Material
 
@@ -71,12 +72,25 @@ class RenderedView:
 
 @dataclass(frozen=True, eq=False)
 class _Rays:
-    """Rays of one point in every pixel; with z = 1 in the camera, so that their parameter is depth."""
+    """One ray in every pixel, with z = 1 in the camera, so that the parameter along it is depth."""
 
-    origin_m: Floats
-    directions: Floats
-    depth_m: Floats
-    body: NDArray[np.int8]
+    x: Floats
+    """(N,) in the camera; so is y."""
+    y: Floats
+    T_base_camera: Floats
+
+    def seen_from(self, body: Body) -> tuple[Floats, Floats]:
+        """Origin (3,) and directions (N, 3) in the coordinates of a body.
+
+        Sums of columns: a product of an (N, 3) and a (3, 3) matrix takes several times as long.
+        """
+        T_body_camera = inverse(body.T_base_body) @ self.T_base_camera
+        right, down, ahead = T_body_camera[:3, :3].T
+        return T_body_camera[:3, 3], self.x[:, None] * right + self.y[:, None] * down + ahead
+
+    def chosen(self, index: NDArray[np.intp]) -> "_Rays":
+        """Some of the rays."""
+        return _Rays(self.x[index], self.y[index], self.T_base_camera)
 
 
 def render(world: World, camera: PinholeCamera, T_base_camera: Floats, supersampling: int = 1) -> RenderedView:
@@ -87,64 +101,71 @@ def render(world: World, camera: PinholeCamera, T_base_camera: Floats, supersamp
     """
     if supersampling < 1:
         raise ValueError("supersampling must be 1 or more")
-    centre = _trace(world, camera, T_base_camera, (0.0, 0.0))
+    centre = _rays(camera, T_base_camera, 0.0, 0.0)
+    depth, seen = _first_bodies(world, centre)
     if supersampling == 1:
-        light = _light(world, centre)
+        light = _light(world, centre, depth, seen)
     else:
         offsets = (np.arange(supersampling) + 0.5) / supersampling - 0.5
-        light = np.zeros((len(centre.depth_m), 3))
-        for dv in offsets:
-            for du in offsets:
-                light += _light(world, _trace(world, camera, T_base_camera, (du, dv)))
+        light = np.zeros((len(depth), 3))
+        for dv, du in product(offsets, repeat=2):
+            rays = _rays(camera, T_base_camera, du, dv)
+            light += _light(world, rays, *_first_bodies(world, rays))
         light /= supersampling**2
     size = (camera.height, camera.width)
     return RenderedView(
         image=np.rint(255 * light.clip(0, 1) ** (1 / GAMMA)).astype(np.uint8).reshape(*size, 3),
-        depth_m=centre.depth_m.reshape(size),
-        body=centre.body.reshape(size),
+        depth_m=depth.reshape(size),
+        body=seen.reshape(size),
         camera=camera,
         T_base_camera=np.array(T_base_camera, dtype=np.float64),
     )
 
 
-def _trace(world: World, camera: PinholeCamera, T_base_camera: Floats, offset_px: tuple[float, float]) -> _Rays:
-    v, u = np.mgrid[: camera.height, : camera.width]
-    pixels = np.stack([u.ravel() + offset_px[0], v.ravel() + offset_px[1]], axis=-1)
-    directions = rotate(T_base_camera, camera.unproject(pixels, np.ones(len(pixels))))
-    origin = T_base_camera[:3, 3]
-    depth = np.full(len(pixels), np.inf)
-    seen = np.full(len(pixels), -1, dtype=np.int8)
+def _rays(camera: PinholeCamera, T_base_camera: Floats, du_px: float, dv_px: float) -> _Rays:
+    v, u = np.indices((camera.height, camera.width)).reshape(2, -1)
+    rays = camera.unproject(np.stack([u + du_px, v + dv_px], axis=-1), np.ones(len(u)))
+    return _Rays(rays[:, 0].copy(), rays[:, 1].copy(), T_base_camera)
+
+
+def _first_bodies(world: World, rays: _Rays) -> tuple[Floats, NDArray[np.int8]]:
+    """Depth (N,) of what the rays meet first, and the number (N,) of its body."""
+    depth = np.full(len(rays.x), np.inf)
+    seen = np.full(len(rays.x), -1, dtype=np.int8)
     for number, body in enumerate(world.bodies):
-        T_body_base = inverse(body.T_base_body)
-        hit = first_hit(body.shape, transform(T_body_base, origin), rotate(T_body_base, directions))
+        hit = first_hit(body.shape, *rays.seen_from(body))
         nearer = hit < depth
         depth[nearer] = hit[nearer]
         seen[nearer] = number
-    return _Rays(origin, directions, depth, seen)
+    return depth, seen
 
 
-def _light(world: World, rays: _Rays) -> Floats:
+def _light(world: World, rays: _Rays, depth_m: Floats, seen: NDArray[np.int8]) -> Floats:
     """Linear light (N, 3) that comes back along the rays: Lambert's law, ambient light and cast shadows."""
-    light = np.zeros((len(rays.body), 3))
+    light = np.zeros((len(seen), 3))
     for number, body in enumerate(world.bodies):
-        chosen = np.flatnonzero(rays.body == number)
-        points = rays.origin_m + rays.depth_m[chosen, None] * rays.directions[chosen]
-        in_body = transform(inverse(body.T_base_body), points)
-        normals = rotate(body.T_base_body, outward_normals(body.shape, in_body))
-        facing = normals @ world.toward_light
-        direct = np.where(_in_shadow(world, points, number), 0.0, facing.clip(0, 1))
+        chosen = np.flatnonzero(seen == number)
+        lit, depth = rays.chosen(chosen), depth_m[chosen]
+        origin, directions = lit.seen_from(body)
+        points = origin + depth[:, None] * directions
+        facing = outward_normals(body.shape, points) @ _toward_light(world, body)
+        direct = np.where(_in_shadow(world, lit, depth, number), 0.0, facing.clip(0, 1))
         shade = AMBIENT * (1 + AMBIENT_SLOPE * facing) + (1 - AMBIENT) * direct
-        light[chosen] = body.material.albedo(in_body) * shade[:, None]
+        light[chosen] = body.material.albedo(points) * shade[:, None]
     return light
 
 
-def _in_shadow(world: World, points_m: Floats, receiver: int) -> Bools:
-    """Which points (N, 3) another solid hides from the light; planes bound the room and cast none."""
-    hidden = np.zeros(len(points_m), dtype=bool)
+def _in_shadow(world: World, rays: _Rays, depth_m: Floats, receiver: int) -> Bools:
+    """At which of the points (N,) another solid hides the light; planes bound the room and cast no shadow."""
+    hidden = np.zeros(len(depth_m), dtype=bool)
     for number, body in enumerate(world.bodies):
         if number == receiver or isinstance(body.shape, Plane):
             continue
-        T_body_base = inverse(body.T_base_body)
-        hit = first_hit(body.shape, transform(T_body_base, points_m), rotate(T_body_base, world.toward_light))
-        hidden |= np.isfinite(hit)
+        origin, directions = rays.seen_from(body)
+        points = origin + depth_m[:, None] * directions
+        hidden |= np.isfinite(first_hit(body.shape, points, _toward_light(world, body)))
     return hidden
+
+
+def _toward_light(world: World, body: Body) -> Floats:
+    return rotate(inverse(body.T_base_body), world.toward_light)
