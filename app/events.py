@@ -1,0 +1,118 @@
+"""What can happen to a session: everything a person does on a page, and a measurement that comes back."""
+
+from dataclasses import dataclass
+
+from app.object_drawing import Part, Pixel
+from rotrecon.primitives import Kind
+from rotrecon.reconstruct import Reconstruction
+
+
+@dataclass(frozen=True)
+class Refused:
+    """A drawing that nothing can be measured with, and what to draw instead."""
+
+    reason: str
+
+
+@dataclass(frozen=True)
+class PointerDragged:
+    """A drag on the picture: with shift, or with the axis tool, an axis; otherwise a rectangle."""
+
+    start_px: Pixel
+    end_px: Pixel
+    shift: bool = False
+    finished: bool = True
+
+
+@dataclass(frozen=True)
+class VertexClicked:
+    """A click on the picture: a corner of a polygon, or its end when within `reach_px` of the first corner."""
+
+    point_px: Pixel
+    reach_px: float = 6.0
+
+
+@dataclass(frozen=True)
+class HandleMoved:
+    """A corner of the area or an end of the axis (0 or 1) dragged to another place."""
+
+    part: Part
+    index: int
+    point_px: Pixel
+    finished: bool = True
+
+
+@dataclass(frozen=True)
+class PolygonClosed:
+    """The polygon is to be closed as it is."""
+
+
+@dataclass(frozen=True)
+class VertexTakenBack:
+    """The last corner of the open polygon was a mistake."""
+
+
+@dataclass(frozen=True)
+class Cancelled:
+    """Whatever was begun and not finished is dropped."""
+
+
+@dataclass(frozen=True)
+class Cleared:
+    """Area and axis of the selected object are taken away."""
+
+
+@dataclass(frozen=True)
+class Undone:
+    """The last corner of an open polygon, else the last change of a drawing, is taken back."""
+
+
+@dataclass(frozen=True)
+class Redone:
+    """What was undone last is done again."""
+
+
+@dataclass(frozen=True)
+class ToolChosen:
+    """What a plain drag draws from now on."""
+
+    tool: Part
+
+
+@dataclass(frozen=True)
+class KindChosen:
+    """The kind of solid to fit; None lets the program decide."""
+
+    kind: Kind | None
+
+
+@dataclass(frozen=True)
+class SectionToggled:
+    """A section of the second cut is taken out of the measurement, or put back."""
+
+    section: int
+
+
+@dataclass(frozen=True)
+class Reconstructed:
+    """A measurement has come back."""
+
+    revision: int
+    outcome: Reconstruction | Refused
+
+
+Event = (
+    PointerDragged
+    | VertexClicked
+    | HandleMoved
+    | PolygonClosed
+    | VertexTakenBack
+    | Cancelled
+    | Cleared
+    | Undone
+    | Redone
+    | ToolChosen
+    | KindChosen
+    | SectionToggled
+    | Reconstructed
+)

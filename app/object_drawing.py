@@ -1,0 +1,68 @@
+"""What has been drawn of one object, and how its parts change when one of them is moved."""
+
+from dataclasses import dataclass, replace
+from math import isfinite
+from typing import Literal
+
+from rotrecon.drawing import AreaOfInterest, Drawing, ObjectAxis
+from rotrecon.primitives import Kind
+
+Pixel = tuple[float, float]
+Part = Literal["area", "axis"]
+PARTS: tuple[Part, ...] = ("area", "axis")
+
+
+@dataclass(frozen=True)
+class ObjectDrawing:
+    """What has been drawn of one object; parts that are not there yet are None."""
+
+    area: AreaOfInterest | None = None
+    axis: ObjectAxis | None = None
+    kind: Kind | None = None
+    excluded_sections: frozenset[int] = frozenset()
+
+    @property
+    def complete(self) -> Drawing | None:
+        """The drawing that can be measured, once area and axis are there."""
+        if self.area is None or self.axis is None:
+            return None
+        return Drawing(self.area, self.axis, self.kind, self.excluded_sections)
+
+
+def with_area(drawn: ObjectDrawing, area: AreaOfInterest) -> ObjectDrawing:
+    """The object with a new area; an axis that lies elsewhere was meant for another object."""
+    axis = drawn.axis
+    if axis is not None:
+        middle = [(a + b) / 2 for a, b in zip(axis.start_px, axis.end_px, strict=True)]
+        for value, along in zip(middle, zip(*area.vertices_px, strict=True), strict=True):
+            if not min(along) <= value <= max(along):
+                axis = None
+    return replace(drawn, area=area, axis=axis)
+
+
+def with_corner(area: AreaOfInterest, index: int, point: Pixel) -> AreaOfInterest:
+    """The area with one corner elsewhere; a rectangle stays one."""
+    corners = area.vertices_px
+    (old_u, old_v), (u, v) = corners[index], point
+    if not _is_rectangle(corners):
+        return AreaOfInterest((*corners[:index], point, *corners[index + 1 :]))
+    return AreaOfInterest(tuple((u if cu == old_u else cu, v if cv == old_v else cv) for cu, cv in corners))
+
+
+def _is_rectangle(corners: tuple[Pixel, ...]) -> bool:
+    """Whether four corners are those of an upright rectangle that has a size."""
+    columns, rows = {u for u, _ in corners}, {v for _, v in corners}
+    return len(corners) == 4 and len(set(corners)) == 4 and len(columns) == 2 and len(rows) == 2
+
+
+def on_frame(point: Pixel, size_px: tuple[int, int]) -> Pixel | None:
+    """The nearest point on a frame of `size_px` (width, height); None for what is not a point."""
+    if not all(isfinite(value) for value in point):
+        return None
+    (u, v), (width, height) = point, size_px
+    return (min(max(float(u), 0.0), width - 1.0), min(max(float(v), 0.0), height - 1.0))
+
+
+def distance_px(one: Pixel, other: Pixel) -> float:
+    """How far two points are apart."""
+    return ((one[0] - other[0]) ** 2 + (one[1] - other[1]) ** 2) ** 0.5

@@ -1,0 +1,242 @@
+"""What has been drawn and what came of it: a frozen Session, events, and the pure step(session, event) -> session."""
+
+from dataclasses import dataclass, replace
+
+from app.events import (
+    Cancelled,
+    Cleared,
+    Event,
+    HandleMoved,
+    KindChosen,
+    PointerDragged,
+    PolygonClosed,
+    Reconstructed,
+    Redone,
+    Refused,
+    SectionToggled,
+    ToolChosen,
+    Undone,
+    VertexClicked,
+    VertexTakenBack,
+)
+from app.object_drawing import PARTS, ObjectDrawing, Part, Pixel, distance_px, on_frame, with_area, with_corner
+from rotrecon.drawing import AreaOfInterest, ObjectAxis
+from rotrecon.fitting import FitFailure
+from rotrecon.reconstruct import Reconstruction
+
+HISTORY_LENGTH = 200
+"""Steps that can be undone: more than a person remembers, few enough to keep."""
+
+
+Objects = tuple[ObjectDrawing, ...]
+
+
+@dataclass(frozen=True)
+class Measured:
+    """What came of the drawing of one revision."""
+
+    revision: int
+    outcome: Reconstruction | Refused
+
+
+@dataclass(frozen=True)
+class Notice:
+    """Something the operator has to be told once."""
+
+    number: int
+    title: str
+    text: str
+
+
+@dataclass(frozen=True)
+class Session:
+    """Everything that all pages share; the picture it is drawn on has `size_px` (width, height)."""
+
+    size_px: tuple[int, int]
+    objects: Objects = (ObjectDrawing(),)
+    selected: int = 0
+    preview: ObjectDrawing | None = None
+    """The selected object as a drag that has not ended would leave it."""
+    vertices_px: tuple[Pixel, ...] = ()
+    """The corners of a polygon that has not been closed."""
+    tool: Part = "area"
+    """What a plain drag draws."""
+    past: tuple[Objects, ...] = ()
+    future: tuple[Objects, ...] = ()
+    revision: int = 0
+    """Grows with every change of what is shown."""
+    measured: Measured | None = None
+    """The latest measurement; until a new one is there, that of an earlier revision."""
+    told_revision: int = -1
+    """The revision whose failure the operator has been told."""
+    notice: Notice | None = None
+
+    @property
+    def shown(self) -> ObjectDrawing:
+        """The selected object, as it is being dragged if it is."""
+        return self.objects[self.selected] if self.preview is None else self.preview
+
+    @property
+    def up_to_date(self) -> bool:
+        """Whether there is nothing left to measure."""
+        return self.shown.complete is None or (self.measured is not None and self.measured.revision == self.revision)
+
+    @property
+    def reconstruction(self) -> Reconstruction | None:
+        """The latest reconstruction, if the latest drawing could be measured at all."""
+        if self.measured is None or isinstance(self.measured.outcome, Refused):
+            return None
+        return self.measured.outcome
+
+
+def step(session: Session, event: Event) -> Session:
+    """The session after an event; an event that makes no sense leaves it as it is."""
+    after = _applied(session, event)
+    if after.shown != session.shown:
+        after = replace(after, revision=session.revision + 1)
+        if after.shown.complete is None:
+            after = replace(after, measured=None)
+    return _told(after)
+
+
+def _applied(session: Session, event: Event) -> Session:
+    match event:
+        case PointerDragged():
+            return _dragged(session, event)
+        case VertexClicked():
+            return _clicked(session, event)
+        case HandleMoved():
+            return _handle_moved(session, event)
+        case PolygonClosed():
+            return _closed(session)
+        case VertexTakenBack():
+            return replace(session, vertices_px=session.vertices_px[:-1])
+        case Cancelled():
+            return replace(session, preview=None, vertices_px=())
+        case Cleared():
+            kept = ObjectDrawing(kind=session.objects[session.selected].kind)
+            return _changed(replace(session, vertices_px=()), kept)
+        case Undone():
+            return _undone(session)
+        case Redone():
+            return _redone(session)
+        case ToolChosen():
+            return replace(session, tool=event.tool) if event.tool in PARTS else session
+        case KindChosen():
+            return _changed(session, replace(session.objects[session.selected], kind=event.kind))
+        case SectionToggled():
+            return _section_toggled(session, event.section)
+        case Reconstructed():
+            return _reconstructed(session, event)
+
+
+def _dragged(session: Session, event: PointerDragged) -> Session:
+    start, end = on_frame(event.start_px, session.size_px), on_frame(event.end_px, session.size_px)
+    if start is None or end is None:
+        return session
+    drawn = replace(session.objects[session.selected], excluded_sections=frozenset())
+    if event.shift or session.tool == "axis":
+        drawn = replace(drawn, axis=ObjectAxis(start, end))
+    else:
+        drawn = with_area(drawn, AreaOfInterest.rectangle(start, end))
+    return _drawn(replace(session, vertices_px=()), drawn, event.finished)
+
+
+def _clicked(session: Session, event: VertexClicked) -> Session:
+    point = on_frame(event.point_px, session.size_px)
+    if point is None:
+        return session
+    vertices = session.vertices_px
+    if len(vertices) >= 3 and distance_px(point, vertices[0]) <= event.reach_px:
+        return _closed(session)
+    return replace(session, vertices_px=(*vertices, point))
+
+
+def _closed(session: Session) -> Session:
+    if len(session.vertices_px) < 3:
+        return session
+    drawn = replace(session.objects[session.selected], excluded_sections=frozenset())
+    return _changed(replace(session, vertices_px=()), with_area(drawn, AreaOfInterest(session.vertices_px)))
+
+
+def _handle_moved(session: Session, event: HandleMoved) -> Session:
+    point, drawn = on_frame(event.point_px, session.size_px), session.objects[session.selected]
+    if point is None:
+        return session
+    drawn = replace(drawn, excluded_sections=frozenset())
+    if event.part == "axis" and drawn.axis is not None and event.index in (0, 1):
+        ends = (point, drawn.axis.end_px) if event.index == 0 else (drawn.axis.start_px, point)
+        return _drawn(session, replace(drawn, axis=ObjectAxis(*ends)), event.finished)
+    if event.part == "area" and drawn.area is not None and 0 <= event.index < len(drawn.area.vertices_px):
+        return _drawn(session, replace(drawn, area=with_corner(drawn.area, event.index, point)), event.finished)
+    return session
+
+
+def _undone(session: Session) -> Session:
+    if session.vertices_px:
+        return replace(session, vertices_px=session.vertices_px[:-1])
+    if not session.past:
+        return session
+    future = (session.objects, *session.future)
+    return replace(session, objects=session.past[-1], past=session.past[:-1], future=future, preview=None)
+
+
+def _redone(session: Session) -> Session:
+    if not session.future:
+        return session
+    past = (*session.past, session.objects)
+    return replace(session, objects=session.future[0], past=past, future=session.future[1:], preview=None)
+
+
+def _section_toggled(session: Session, section: int) -> Session:
+    result = session.reconstruction
+    if result is None or result.second_cut is None or not session.up_to_date:
+        return session
+    if not 0 <= section < len(result.second_cut.circles.state):
+        return session
+    drawn = session.objects[session.selected]
+    return _changed(session, replace(drawn, excluded_sections=drawn.excluded_sections ^ {section}))
+
+
+def _reconstructed(session: Session, event: Reconstructed) -> Session:
+    if event.revision != session.revision or session.shown.complete is None:
+        return session
+    return replace(session, measured=Measured(event.revision, event.outcome))
+
+
+def _told(session: Session) -> Session:
+    """The session with a notice of a failure, once a revision and not in the middle of a drag."""
+    measured = session.measured
+    if session.preview is not None or measured is None or measured.revision != session.revision:
+        return session
+    if session.told_revision == session.revision:
+        return session
+    match measured.outcome:
+        case Refused(reason):
+            title, text = "This drawing cannot be measured", sentence(reason)
+        case Reconstruction(fit=FitFailure(advice=advice)):
+            title, text = "Nothing could be fitted", sentence(advice)
+        case _:
+            return session
+    number = 1 if session.notice is None else session.notice.number + 1
+    return replace(session, told_revision=session.revision, notice=Notice(number, title, text))
+
+
+def _drawn(session: Session, drawn: ObjectDrawing, finished: bool) -> Session:
+    """A drag's outcome: only shown while it lasts, part of the drawing when it has ended."""
+    return _changed(session, drawn) if finished else replace(session, preview=drawn)
+
+
+def _changed(session: Session, drawn: ObjectDrawing) -> Session:
+    """The session with the selected object drawn anew, which can be undone."""
+    selected = session.selected
+    objects = (*session.objects[:selected], drawn, *session.objects[selected + 1 :])
+    if objects == session.objects:
+        return replace(session, preview=None)
+    past = (*session.past, session.objects)[-HISTORY_LENGTH:]
+    return replace(session, objects=objects, past=past, future=(), preview=None)
+
+
+def sentence(text: str) -> str:
+    """A reason as a sentence of its own: a capital first, a full stop last."""
+    return text[:1].upper() + text[1:] + ("" if text.endswith((".", "!", "?")) else ".")
