@@ -1,5 +1,6 @@
 """NumPy archives: arrays by name, never pickled ones."""
 
+import math
 import zipfile
 from io import BytesIO
 from typing import IO, Any
@@ -8,7 +9,6 @@ import numpy as np
 from numpy.lib import format as npy
 from numpy.typing import NDArray
 
-from rotrecon.arrays import Bytes
 from rotrecon.formats.cloud import RawCloud, make_cloud
 from rotrecon.formats.source import SourceFile
 
@@ -47,11 +47,11 @@ def encode_npz(**arrays: NDArray[Any]) -> bytes:
     return content.getvalue()
 
 
-def _read_arrays(source: SourceFile, names: tuple[str, ...]) -> dict[str, Bytes | NDArray[Any]]:
+def _read_arrays(source: SourceFile, names: tuple[str, ...]) -> dict[str, NDArray[Any]]:
     content = source.read_bytes()
     try:
         archive = zipfile.ZipFile(BytesIO(content))
-    except zipfile.BadZipFile as failure:
+    except Exception as failure:
         raise source.error(
             "is not an NPZ archive, or is truncated", "copy it again, or save it with numpy.savez"
         ) from failure
@@ -61,18 +61,23 @@ def _read_arrays(source: SourceFile, names: tuple[str, ...]) -> dict[str, Bytes 
 
 
 def _read_member(source: SourceFile, archive: zipfile.ZipFile, name: str) -> NDArray[Any]:
+    damaged = source.error(f"has a damaged array {name}", "copy or record it again")
     try:
         with archive.open(f"{name}.npy") as member:
             shape, dtype = _announced(member)
-        if not dtype.hasobject:
-            source.check_count(int(np.prod(shape, dtype=object)) // 3, f"pixels in {name}")
-            with archive.open(f"{name}.npy") as member:
-                return npy.read_array(member, allow_pickle=False)
-    except (ValueError, OSError, EOFError, zipfile.BadZipFile, zipfile.LargeZipFile) as failure:
-        raise source.error(f"has a damaged array {name}", "copy or record it again") from failure
-    raise source.error(
-        f"has a pickled array {name}, and pickles are never loaded", "save plain numbers with numpy.savez"
-    )
+    except Exception as failure:
+        raise damaged from failure
+    if dtype.hasobject:
+        raise source.error(
+            f"has a pickled array {name}, and pickles are never loaded", "save plain numbers with numpy.savez"
+        )
+    channels = shape[-1] if len(shape) == 3 else 1
+    source.check_count(math.prod(shape) // max(channels, 1), f"pixels in {name}")
+    try:
+        with archive.open(f"{name}.npy") as member:
+            return npy.read_array(member, allow_pickle=False)
+    except Exception as failure:
+        raise damaged from failure
 
 
 def _announced(member: IO[bytes]) -> tuple[tuple[int, ...], np.dtype[Any]]:
