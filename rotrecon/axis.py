@@ -99,9 +99,9 @@ class SpaceSections:
         """First, middle and last point (S, 3, 3) of each section, brought into one plane, and the counts (S,)."""
         count = np.diff(self.start).astype(np.int32)
         rank = np.stack([np.zeros_like(count), (count - 1) // 2, count - 1], axis=1)
-        index = np.clip(self.start[:-1, None] + rank, 0, len(self.pixel) - 1)
-        points = self.points_m[index].astype(np.float64)
-        points[count == 0] = np.nan
+        points = np.full((len(count), 3, 3), np.nan)
+        filled = count > 0
+        points[filled] = self.points_m[(self.start[:-1, None] + rank)[filled]]
         along = self.axis.along(points)
         shift = along.mean(axis=1, keepdims=True) - along
         return points + shift[..., None] * self.axis.direction, count

@@ -112,7 +112,8 @@ def _pixels_on_grid(
     def coordinate(axis: int) -> Indices:
         on_axis = (origin_px[axis] + rows * along[axis]).astype(np.float32)
         beside = (columns * across[axis]).astype(np.float32)
-        return np.rint(on_axis[:, None] + beside[None, :]).astype(np.int32)
+        # not rint, which rounds halves to even and would take every other pixel twice
+        return np.floor(on_axis[:, None] + beside[None, :] + np.float32(0.5)).astype(np.int32)
 
     u, v = coordinate(0), coordinate(1)
     in_frame = (u >= 0) & (u < width) & (v >= 0) & (v < height)

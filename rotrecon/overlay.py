@@ -139,9 +139,10 @@ def _sphere_curves(ball: Sphere, camera: PinholeCamera) -> tuple[Outline, ...]:
     section = _ring(ball.center_m, ball.direction, ball.radius_m)
     hidden = ((section - ball.center_m) * section).sum(axis=1) > 0
     curves = [Outline(camera.project(section), ~hidden)]
-    shrink = 1 - ball.radius_m**2 / float(ball.center_m @ ball.center_m)
+    away_m = float(np.linalg.norm(ball.center_m))
+    shrink = 1 - (ball.radius_m / away_m) ** 2
     if shrink > 0:
-        limb = _ring(ball.center_m * shrink, ball.center_m, ball.radius_m * np.sqrt(shrink))
+        limb = _ring(ball.center_m * shrink, ball.center_m / away_m, ball.radius_m * np.sqrt(shrink))
         curves.append(Outline(camera.project(limb), np.ones(len(limb), dtype=np.bool_)))
     return tuple(curves)
 

@@ -61,14 +61,13 @@ def reconstruct(frame: Frame, drawing: Drawing, settings: Settings) -> Reconstru
     segments = cut_sections(drawing.area, drawing.axis, (frame.camera.width, frame.camera.height))
     depth_m, usable = _usable_depth(frame, segments)
     segmentation = segment(depth_m, usable, segments.inside, settings)
-    first = _cut(*base_points(frame.points_m, segments.pixel, segmentation.kept), frozenset(), settings)
+    first = _cut(*base_points(frame.points_m, segments.pixel, segmentation.kept), settings)
     result = Reconstruction(
         frame, drawing, settings, segments, segmentation, first, fit=_why_not(first.circles, usable, settings)
     )
     if first.axis is None:
         return result
-    sections = _cut_in_space(frame, segments, segmentation, first.axis, first.circles)
-    second = _cut(*sections.base_points(), drawing.excluded_sections, settings)
+    sections, second = _cut_in_space(result, first, first.axis)
     result = replace(result, sections=sections, second_cut=second, fit=_why_not(second.circles, usable, settings))
     return result if second.axis is None else _with_solid(result, first, second, second.axis.axis, sections)
 
@@ -85,7 +84,7 @@ def _usable_depth(frame: Frame, segments: CrossSegments) -> tuple[Cloud, Bools]:
     return depth_m, usable
 
 
-def _cut(points_m: Floats, count: Indices, excluded: frozenset[int], settings: Settings) -> Cut:
+def _cut(points_m: Floats, count: Indices, settings: Settings, excluded: frozenset[int] = frozenset()) -> Cut:
     """Circles through the base points (S, 3, 3) of sections, less the excluded ones, and their axis."""
     circles = circumcircles(points_m, count, settings)
     state = circles.state.copy()
@@ -94,16 +93,31 @@ def _cut(points_m: Floats, count: Indices, excluded: frozenset[int], settings: S
     return Cut(circles, fit_axis(circles, settings))
 
 
-def _cut_in_space(
-    frame: Frame, segments: CrossSegments, segmentation: Segmentation, axis: AxisFit, circles: SectionCircles
-) -> SpaceSections:
-    """The segmented pixels cut anew, in as many sections over the length that the first cut's circles cover."""
-    pixel = segments.pixel[segmentation.kept]
+def _cut_in_space(result: Reconstruction, first: Cut, axis: AxisFit) -> tuple[SpaceSections, Cut]:
+    """The segmented pixels cut anew across the axis in space, and again while the axis so found still turns.
+
+    A cut tilted by t gives radii wrong by about t^2 / 2. The operator's exclusions come last, so that they do not
+    renumber the sections they name.
+    """
+    settings = result.settings
+    pixel = result.segments.pixel[result.segmentation.kept]
+    points_m = result.frame.points_m.reshape(-1, 3)[pixel]
+    count = len(first.circles.state)
+    sections = cut_in_space(points_m, pixel, axis.axis, _span(axis, first.circles), count)
+    for _ in range(settings.cuts_in_space - 1):
+        cut = _cut(*sections.base_points(), settings)
+        if cut.axis is None or cut.axis.axis.direction @ axis.axis.direction > np.cos(settings.axis_settled_rad):
+            break
+        axis = cut.axis
+        sections = cut_in_space(points_m, pixel, axis.axis, _span(axis, cut.circles), count)
+    return sections, _cut(*sections.base_points(), settings, result.drawing.excluded_sections)
+
+
+def _span(axis: AxisFit, circles: SectionCircles) -> tuple[float, float]:
+    """How far along the axis the used circles reach, half a section beyond the outermost centres."""
     along = axis.axis.along(circles.center_m)[circles.used]
-    margin = np.ptp(along) / (2 * len(along))
-    ends = (float(along.min() - margin), float(along.max() + margin))
-    points_m = frame.points_m.reshape(-1, 3)[pixel]
-    return cut_in_space(points_m, pixel, axis.axis, ends, int(np.ptp(np.flatnonzero(circles.used))) + 1)
+    margin = float(np.ptp(along)) / (2 * len(along))
+    return float(along.min()) - margin, float(along.max()) + margin
 
 
 def _with_solid(result: Reconstruction, first: Cut, second: Cut, axis: Axis, sections: SpaceSections) -> Reconstruction:

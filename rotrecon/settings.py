@@ -29,6 +29,10 @@ class Settings:
     """A line, a cone or a sphere through fewer circles would be held by nothing."""
     distance_floor_m: float = 5e-6
     """Deviations below this are rounding, not error: without it exact data would lose every centre."""
+    cuts_in_space: int = 4
+    """At most so many cuts across the axis in space; all but axes that run into the picture settle in one or two."""
+    axis_settled_rad: float = 0.02
+    """A turn of the axis below this changes the radius by less than 0.02 %."""
     rod_length_over_diameter: float = 8.0
     """A cylinder at least this long for its diameter, and thin, is a rod (paper table 1: extended, thin)."""
     rod_diameter_m: float = 0.030

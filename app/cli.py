@@ -1,0 +1,148 @@
+"""The `rotrecon` command."""
+
+import json
+import sys
+from pathlib import Path
+from typing import Annotated, Literal
+
+import typer
+
+from app.describe import describe
+from app.drawing_text import parse_area, parse_axis
+from rotrecon.answer import answer, cannot
+from rotrecon.drawing import Drawing, DrawingError
+from rotrecon.errors import SceneError
+from rotrecon.files import write_whole
+from rotrecon.fitting import FitFailure
+from rotrecon.formats.image import encode_png
+from rotrecon.frame import Capture, Frame, FrameUnavailable
+from rotrecon.overlay import outlines, with_outlines, with_segmentation
+from rotrecon.reconstruct import Reconstruction, reconstruct
+from rotrecon.scene import read_scene
+from rotrecon.settings import Method, Settings
+from rotrecon.simulate import simulate as simulate_object
+from rotrecon.tools import ToolTableError, default_tools, read_tools
+from rotrecon.truth import TRUTH_FILE, write_simulated
+
+cli = typer.Typer(
+    add_completion=False,
+    no_args_is_help=True,
+    pretty_exceptions_enable=False,
+    help="Measures objects of revolution in front of a robot arm, and names the tool that fits them.",
+)
+DEMO = "leg"
+BAD_INPUT, CANNOT = 2, 3
+
+Scene = Annotated[Path, typer.Argument(metavar="SCENE", help="A scene folder.")]
+ToolFile = Annotated[Path | None, typer.Option(metavar="FILE", help="A tool table in place of the one that ships.")]
+
+
+def main() -> None:
+    """Run the command; bad input is one sentence on stderr and exit code 2."""
+    try:
+        cli()
+    except (SceneError, DrawingError, ToolTableError) as error:
+        typer.echo(f"rotrecon: {error}", err=True)
+        sys.exit(BAD_INPUT)
+
+
+@cli.command()
+def fit(
+    scene: Scene,
+    area: Annotated[str, typer.Option(help='Corners "u,v u,v" of a rectangle, or of a polygon if more, px.')],
+    axis: Annotated[str, typer.Option(help='A stroke "u,v u,v" along the object, px.')],
+    kind: Annotated[Literal["auto", "cylinder", "rod", "sphere", "cone"], typer.Option()] = "auto",
+    method: Annotated[Method, typer.Option()] = "paper",
+    tools: ToolFile = None,
+    json_: Annotated[bool, typer.Option("--json", help="Print one JSON object.")] = False,
+    overlay: Annotated[Path | None, typer.Option(metavar="OUT.png", help="Write the frame with the result.")] = None,
+) -> None:
+    """Measure the object that a drawing points at. Exits with 0 for a result, 3 for a reasoned "cannot"."""
+    drawing = Drawing(parse_area(area), parse_axis(axis), None if kind == "auto" else kind)
+    settings = Settings(method=method, tools=default_tools() if tools is None else read_tools(tools))
+    frame = read_scene(scene).frame()
+    if isinstance(frame, FrameUnavailable):
+        _print_answer(cannot(frame.reason, method), json_)
+        raise typer.Exit(CANNOT)
+    result = reconstruct(frame, drawing, settings)
+    if overlay is not None:
+        _write_overlay(overlay, result)
+    _print_answer(answer(result), json_)
+    if isinstance(result.fit, FitFailure):
+        raise typer.Exit(CANNOT)
+
+
+def _print_answer(content: dict[str, object], as_json: bool) -> None:
+    typer.echo(json.dumps(content, allow_nan=False) if as_json else describe(content))
+
+
+def _write_overlay(path: Path, result: Reconstruction) -> None:
+    image = with_outlines(with_segmentation(result.frame.image, result), outlines(result))
+    write_whole(path, encode_png(image))
+
+
+@cli.command()
+def serve(
+    scene: Annotated[Path | None, typer.Argument(metavar="[SCENE]", help="A scene folder; without: a demo.")] = None,
+    host: Annotated[str, typer.Option(help="Address to listen on.")] = "127.0.0.1",
+    port: Annotated[int, typer.Option(min=1, max=65535)] = 8080,
+    tools: ToolFile = None,
+) -> None:
+    """Open the operator's console on a scene."""
+    capture = _demo() if scene is None else read_scene(scene)
+    frame = capture.frame()
+    if isinstance(frame, FrameUnavailable):
+        typer.echo(f"rotrecon: {frame.reason}", err=True)
+        raise typer.Exit(CANNOT)
+    settings = Settings(tools=default_tools() if tools is None else read_tools(tools))
+    from app.console import serve as serve_console  # viser takes a second to import, which no other command needs
+
+    serve_console(frame, capture.name, settings, host, port, notes=capture.notes)
+
+
+def _demo() -> Capture:
+    frame: Frame = simulate_object(DEMO, seed=0).frame
+    return Capture(f"Demo: a simulated chair {DEMO}, 36 mm", recorded=frame)
+
+
+@cli.command()
+def simulate(
+    out: Annotated[Path, typer.Argument(metavar="OUT", help="The scene folder to write.")],
+    object_: Annotated[Literal["leg", "ball", "wire", "pipe", "cone"], typer.Option("--object")] = DEMO,
+    seed: Annotated[int, typer.Option(min=0)] = 0,
+) -> None:
+    """Write a scene whose truth is known, and the truth beside it."""
+    write_simulated(out, simulate_object(object_, seed))
+    typer.echo(f"wrote {out}; its truth is in {out / TRUTH_FILE}")
+
+
+@cli.command("import")
+def import_(
+    source: Annotated[Path, typer.Argument(metavar="SOURCE", help="A PCD, PLY, NPZ, picture, or ROS 1 or 2 bag.")],
+    out: Annotated[Path, typer.Argument(metavar="OUT", help="The scene folder to write.")],
+    depth: Annotated[Path | None, typer.Option(metavar="FILE", help="The depth map of a picture.")] = None,
+    depth_scale: Annotated[float | None, typer.Option(help="Metres of one count of a depth PNG.")] = None,
+    intrinsics: Annotated[str | None, typer.Option(metavar="FX,FY,CX,CY", help="Of the camera, px.")] = None,
+    size: Annotated[
+        str | None, typer.Option(metavar="WxH", help="Picture an unorganised cloud is seen in, px.")
+    ] = None,
+    topic: Annotated[str | None, typer.Option(help="The PointCloud2 topic of a bag.")] = None,
+    name: Annotated[str | None, typer.Option(help="The scene's name.")] = None,
+) -> None:
+    """Make a scene folder from a foreign recording."""
+    camera = None if intrinsics is None else Intrinsics(*_numbers("--intrinsics", intrinsics, ",", 4))
+    shape = None if size is None else tuple(int(number) for number in _numbers("--size", size, "x", 2))
+    capture = import_scene(source, out, ImportOptions(depth, depth_scale, camera, shape, topic, name))
+    typer.echo(f"wrote {out}: {capture.name}")
+    for note in capture.notes:
+        typer.echo(f"  {note}")
+
+
+def _numbers(option: str, text: str, separator: str, count: int) -> list[float]:
+    try:
+        numbers = [float(word) for word in text.split(separator)]
+    except ValueError:
+        numbers = []
+    if len(numbers) != count:
+        raise typer.BadParameter(f"{option} {text} is not {count} numbers; write them with '{separator}' between")
+    return numbers

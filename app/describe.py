@@ -1,0 +1,44 @@
+"""An answer in words, for a person at a terminal."""
+
+from typing import Any
+
+
+def describe(answer: dict[str, Any]) -> str:
+    """A few lines that say what was measured and which tool fits, or why not."""
+    if answer["kind"] is None:
+        return "\n".join(["No result:", *(f"  {reason}" for reason in answer["reasons"])])
+    lines = [
+        f"{'inside of a ' if answer['concave'] else ''}{answer['kind']}, {answer['diameter_mm']:.1f} mm in diameter",
+        "  no interval: the paper's method has none",
+        *_geometry(answer),
+        f"  {answer['arc_deg']:.0f} degrees of it are visible; its pixels lie {answer['rms_mm']:.2f} mm off it (RMS)",
+        f"  {_sections(answer['sections'])}",
+        f"  could be: {_candidates(answer['candidates'])}",
+        f"  tool: {answer['tool'] or 'none'}",
+        *(f"    {reason}" for reason in answer["reasons"]),
+    ]
+    return "\n".join(lines)
+
+
+def _geometry(answer: dict[str, Any]) -> list[str]:
+    lines = [f"  middle at {_vector(answer['center_m'])} m in base coordinates"]
+    if answer["length_mm"] is not None:
+        lines.insert(0, f"  {answer['length_mm']:.0f} mm long where it was drawn")
+    if answer["axis"] is not None:
+        lines.append(f"  axis along {_vector(answer['axis']['direction'])}")
+    if answer["half_angle_deg"] is not None:
+        lines.append(f"  half angle {answer['half_angle_deg']:.1f} degrees")
+    return lines
+
+
+def _sections(sections: dict[str, Any]) -> str:
+    dropped = ", ".join(f"{count} {reason.replace('_', ' ')}" for reason, count in sections["dropped"].items())
+    return f"{sections['used']} sections used" + (f"; dropped: {dropped}" if dropped else "")
+
+
+def _candidates(candidates: list[dict[str, Any]]) -> str:
+    return ", ".join(f"{c['kind']} {c['diameter_mm']:.1f} mm ({100 * c['score']:.0f} %)" for c in candidates)
+
+
+def _vector(numbers: list[float]) -> str:
+    return ", ".join(f"{number:.3f}" for number in numbers)
