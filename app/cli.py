@@ -16,6 +16,8 @@ from rotrecon.files import write_whole
 from rotrecon.fitting import FitFailure
 from rotrecon.formats.image import encode_png
 from rotrecon.frame import Capture, Frame, FrameUnavailable
+from rotrecon.importing import ImportOptions, import_scene
+from rotrecon.intrinsics import Intrinsics
 from rotrecon.overlay import outlines, with_outlines, with_segmentation
 from rotrecon.reconstruct import Reconstruction, reconstruct
 from rotrecon.scene import read_scene
@@ -123,9 +125,7 @@ def import_(
     depth: Annotated[Path | None, typer.Option(metavar="FILE", help="The depth map of a picture.")] = None,
     depth_scale: Annotated[float | None, typer.Option(help="Metres of one count of a depth PNG.")] = None,
     intrinsics: Annotated[str | None, typer.Option(metavar="FX,FY,CX,CY", help="Of the camera, px.")] = None,
-    size: Annotated[
-        str | None, typer.Option(metavar="WxH", help="Picture an unorganised cloud is seen in, px.")
-    ] = None,
+    size: Annotated[str | None, typer.Option(metavar="WxH", help="Camera of an unorganised cloud, px.")] = None,
     topic: Annotated[str | None, typer.Option(help="The PointCloud2 topic of a bag.")] = None,
     name: Annotated[str | None, typer.Option(help="The scene's name.")] = None,
 ) -> None:
