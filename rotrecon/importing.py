@@ -22,6 +22,8 @@ from rotrecon.scene import check_size, read_scene
 from rotrecon.scene_rules import camera_matrix_problem
 from rotrecon.scene_writing import SceneRecord, write_scene
 
+STATED_TOLERANCE_PX = 0.5
+"""How far a camera_info may put the points from their pixels: the camera that made the cloud does so exactly."""
 _IMAGE_ENDINGS = frozenset({".png", ".jpg", ".jpeg"})
 
 
@@ -164,7 +166,7 @@ def _camera_matrix(
         return options.intrinsics.K, ""
     plausible = [K for K in stated if camera_matrix_problem(K) is None]
     nearest = min(plausible, key=lambda K: _distance_px(points_m, K), default=None)
-    if nearest is not None and _distance_px(points_m, nearest) <= RAY_TOLERANCE_PX:
+    if nearest is not None and _distance_px(points_m, nearest) <= STATED_TOLERANCE_PX:
         return nearest, "; intrinsics from its camera_info"
     recovered = recover_intrinsics(points_m)
     if recovered is None or _distance_px(points_m, recovered.K) > RAY_TOLERANCE_PX:
