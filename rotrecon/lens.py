@@ -47,10 +47,12 @@ class Lens:
         along_u, along_v = cv2.initUndistortRectifyMap(
             self.camera.K, self.distortion, np.eye(3), self.camera.K, size, cv2.CV_32FC1
         )
-        u, v = np.rint(along_u).astype(np.int64), np.rint(along_v).astype(np.int64)
-        recorded = (u >= 0) & (u < size[0]) & (v >= 0) & (v < size[1])
+        recorded = (np.abs(along_u - (size[0] - 1) / 2) < size[0] / 2) & (
+            np.abs(along_v - (size[1] - 1) / 2) < size[1] / 2
+        )
+        u, v = np.rint(along_u[recorded]).astype(np.int64), np.rint(along_v[recorded]).astype(np.int64)
         brought = np.full_like(points_m, np.nan)
-        brought[recorded] = points_m[v[recorded], u[recorded]]
+        brought[recorded] = points_m[v, u]
         return brought
 
     def cloud(self, depth_m: Cloud) -> Cloud:
@@ -61,9 +63,9 @@ class Lens:
         rays = cv2.undistortPoints(
             pixels.reshape(-1, 1, 2), self.camera.K, self.distortion, criteria=_INVERSION
         ).reshape(*depth_m.shape, 2)
-        points = np.concatenate([rays * depth_m[..., None], depth_m[..., None]], axis=-1)
-        with np.errstate(invalid="ignore"):
-            inverted = np.linalg.norm(self.project(points) - pixels, axis=-1) < _INVERSION_TOLERANCE_PX
+        with np.errstate(over="ignore", invalid="ignore"):
+            points = np.concatenate([rays * depth_m[..., None], depth_m[..., None]], axis=-1)
+            inverted = (np.abs(self.project(points) - pixels) < _INVERSION_TOLERANCE_PX).all(axis=-1)
         points[~inverted] = np.nan
         return points.astype(np.float32)
 

@@ -12,6 +12,10 @@ from rotrecon.formats.source import MAX_PIXELS
 from rotrecon.lens import COEFFICIENT_COUNTS
 from rotrecon.scene_schema import EXAMPLES, CameraTable, FrameTable, SceneTable, ViewTable, WorkspaceTable
 
+FOCAL_LENGTHS_PER_SIDE = (0.05, 1000.0)
+"""Focal lengths in larger sides of the picture, from beyond any fisheye to beyond any telescope: a focal length in
+millimetres or as a part of the picture falls outside."""
+
 
 def check_scene(file: Path, scene: SceneTable) -> None:
     """Check every rule that types cannot say; `file` is only named in errors. Raises SceneError."""
@@ -38,6 +42,12 @@ def _check_camera(file: Path, field: str, camera: CameraTable) -> None:
             file, f"{field}.size", f"is {width} x {height}", f"write {EXAMPLES['size']}, {MAX_PIXELS:,} pixels at most"
         )
     if problem := camera_matrix_problem(np.array(camera.K)):
+        raise SceneError(file, f"{field}.K", problem, f"write {EXAMPLES['K']}")
+    low, high = (limit * max(camera.size) for limit in FOCAL_LENGTHS_PER_SIDE)
+    if not all(low <= camera.K[axis][axis] <= high for axis in (0, 1)):
+        problem = (
+            f"has focal lengths {camera.K[0][0]:g} and {camera.K[1][1]:g}, no pixels of a {width} x {height} picture"
+        )
         raise SceneError(file, f"{field}.K", problem, f"write {EXAMPLES['K']}")
     count = len(camera.distortion)
     if count not in COEFFICIENT_COUNTS or not np.isfinite(camera.distortion).all():
@@ -86,7 +96,9 @@ def _check_use(file: Path, field: str, use: FrameTable | ViewTable, cameras: dic
         raise SceneError(
             file, f"{field}.camera", f"is {use.camera!r}, and the cameras here are {known}", "name one of [cameras]"
         )
-    if use.T_base_camera is not None and not is_rigid(np.array(use.T_base_camera)):
+    with np.errstate(over="ignore", invalid="ignore"):
+        rigid = use.T_base_camera is None or is_rigid(np.array(use.T_base_camera))
+    if not rigid:
         raise SceneError(
             file,
             f"{field}.T_base_camera",

@@ -112,7 +112,7 @@ def parse_scene(file: Path, content: bytes) -> SceneTable:
     """The tables of a scene.toml, their types checked; `file` is only named in errors. Raises SceneError."""
     try:
         raw = tomllib.loads(content.decode())
-    except (UnicodeDecodeError, tomllib.TOMLDecodeError) as failure:
+    except (ValueError, RecursionError) as failure:
         raise SceneError(file, "the file", f"is not TOML ({failure})", "correct it at that place") from failure
     return convert_scene(file, raw)
 

@@ -234,6 +234,7 @@ K_REMEDY = "[[fx, 0, cx], [0, fy, cy], [0, 0, 1]]"
         ("cameras.main.size", [9, 6], "frame.depth is 8 x 6 but cameras.main.size is 9 x 6"),
         ("cameras.main.K", [[10, 0], [0, 10]], K_REMEDY),
         ("cameras.main.K", [[-10, 0, 3], [0, 10, 3], [0, 0, 1]], "must be positive"),
+        ("cameras.main.K", [[0.004, 0, 3], [0, 0.004, 3], [0, 0, 1]], "no pixels of a 8 x 6 picture"),
         ("cameras.main.K", [[10, 1, 3], [0, 10, 3], [0, 0, 1]], "skew"),
         ("cameras.main.K", [[10, 0, 3], [2, 10, 3], [0, 0, 1]], "skew"),
         ("cameras.main.K", [[10, 0, 3], [0, 10, 3], [0, 0, 2]], "last row"),
@@ -265,6 +266,7 @@ K_REMEDY = "[[fx, 0, cx], [0, fy, cy], [0, 0, 1]]"
         ("frame.depth_scale", 0.001, "takes no depth_scale"),
         ("frame.T_base_camera", np.diag([1.0, 1, 2, 1]).tolist(), "not a rigid pose"),
         ("frame.T_base_camera", np.diag([1.0, 1, -1, 1]).tolist(), "not a rigid pose"),
+        ("frame.T_base_camera", np.diag([1e308, 1, 1, 1]).tolist(), "not a rigid pose"),
         ("frame.T_base_camera", np.eye(3).tolist(), "four rows of four"),
         ("frame.T_base_camera", [[float("nan")] * 4] * 4, "not a rigid pose"),
         ("frame.captured_at", "2026-01-31T12:00:00Z", "captured_at = 2026-01-31T12:00:00Z"),
@@ -308,7 +310,7 @@ def test_views_that_are_wrong_are_refused_with_a_remedy(tmp_path, scene, words):
     assert_refused(save(tmp_path, scene), words)
 
 
-@pytest.mark.parametrize("content", [b"format = ", b"\xff\xfe", b"format = 1\nformat = 1"])
+@pytest.mark.parametrize("content", [b"format = ", b"\xff\xfe", b"format = 1\nformat = 1", b"a = " + b"[" * 5000])
 def test_a_scene_that_is_not_toml_is_refused(tmp_path, content):
     assert_refused(save(tmp_path, table(), **{"scene.toml": content}), "is not TOML")
 
@@ -415,6 +417,11 @@ def test_the_picture_and_the_depth_are_undistorted_alike(tmp_path):
     frame = read_scene(save(tmp_path, scene, **files)).recorded
     bright = frame.image[..., 0] > 127
     assert (bright == (frame.depth_m == 1))[np.isfinite(frame.depth_m)].mean() > 0.995
+
+
+def test_a_lens_beyond_all_numbers_leaves_nothing(tmp_path):
+    distorted = {"size": [WIDTH, HEIGHT], "K": CAMERA.K.tolist(), "distortion": [1e308, 1e308, 0, 0]}
+    assert_refused(save(tmp_path, table() | {"cameras": {"main": distorted}}), "sees none of the recorded points")
 
 
 def test_where_a_lens_cannot_be_inverted_there_is_no_depth():
