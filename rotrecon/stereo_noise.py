@@ -25,8 +25,6 @@ class StereoErrors:
     """Gap between the disparities in a window that makes them two surfaces."""
     foreground_share: float = 0.35
     """Share of a window at which the nearer surface takes it; below a half it grows over the outline."""
-    blend_px: int = 3
-    """Odd width over which the two surfaces run into each other at the outline: flying pixels."""
     half_occlusion: bool = True
     """Whether pixels that the second camera does not see have no depth."""
     hole_share: float = 0.01
@@ -99,8 +97,6 @@ def _matched(exact: Floats, errors: StereoErrors) -> tuple[Floats, Bools]:
     disparity, taken = _one_surface(windows[rows, columns].reshape(len(rows), -1), errors)
     matched[rows, columns] = disparity
     foreground[rows, columns] = taken
-    blended = np.asarray(cv2.blur(matched, (errors.blend_px, errors.blend_px)), dtype=np.float64)
-    matched[rows, columns] = blended[rows, columns]
     return matched, foreground
 
 

@@ -69,12 +69,12 @@ def test_a_thin_bar_hides_only_its_own_width() -> None:
     assert hidden.max() <= 210 - 34
 
 
-def test_outlines_are_smeared_over_part_of_the_window_and_grow() -> None:
+def test_outlines_grow_and_nothing_flies_between_two_flat_surfaces() -> None:
     errors = StereoErrors(disparity_sigma_px=0, hole_share=0, half_occlusion=False)
     depth = stereo_depth(view_of(bar_before_a_wall()), errors, np.random.default_rng(0))
     disparity = FOCAL_BASELINE / depth[240]
     between = (disparity > 41) & (disparity < 74)
-    assert 2 <= between.sum() <= 8
+    assert between.sum() == 0
     assert (disparity > (40 + 75) / 2).sum() > BAR.stop - BAR.start
     far = np.ones(CAMERA.width, dtype=bool)
     far[BAR.start - errors.window_px : BAR.stop + errors.window_px] = False
@@ -95,7 +95,7 @@ def test_what_is_not_there_has_no_depth() -> None:
     assert np.isnan(stereo_depth(view_of(depth), PERFECT, np.random.default_rng(0))[:100]).all()
 
 
-def test_the_middle_of_a_ball_keeps_its_depth_and_its_limb_does_not() -> None:
+def test_the_middle_of_a_ball_keeps_its_depth_and_its_limb_is_drawn_forward_by_the_window() -> None:
     errors = StereoErrors(hole_share=0)
     scene = simulate("ball", 0, noise=errors, supersampling=1)
     error = FOCAL_BASELINE / scene.frame.depth_m - FOCAL_BASELINE / scene.view.depth_m
@@ -105,4 +105,4 @@ def test_the_middle_of_a_ball_keeps_its_depth_and_its_limb_does_not() -> None:
     error = error[rows, columns]
     middle, limb = radius < 0.5 * radius.max(), radius > radius.max() - 2
     assert np.nanstd(error[middle]) == pytest.approx(errors.disparity_sigma_px, rel=0.25)
-    assert np.nanstd(error[limb]) > 5 * errors.disparity_sigma_px
+    assert np.nanmean(error[limb]) > 5 * errors.disparity_sigma_px
