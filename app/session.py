@@ -22,6 +22,7 @@ from app.events import (
 from app.object_drawing import PARTS, ObjectDrawing, Part, Pixel, distance_px, on_frame, with_area, with_corner
 from rotrecon.drawing import AreaOfInterest, ObjectAxis
 from rotrecon.fitting import FitFailure
+from rotrecon.primitives import KINDS
 from rotrecon.reconstruct import Reconstruction
 
 HISTORY_LENGTH = 200
@@ -122,12 +123,14 @@ def _applied(session: Session, event: Event) -> Session:
             return _redone(session)
         case ToolChosen():
             return replace(session, tool=event.tool) if event.tool in PARTS else session
-        case KindChosen():
+        case KindChosen() if event.kind is None or event.kind in KINDS:
             return _changed(session, replace(session.objects[session.selected], kind=event.kind))
         case SectionToggled():
             return _section_toggled(session, event.section)
         case Reconstructed():
             return _reconstructed(session, event)
+        case KindChosen():
+            return session
 
 
 def _dragged(session: Session, event: PointerDragged) -> Session:

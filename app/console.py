@@ -1,0 +1,261 @@
+"""The operator's console: one queue of events into the session, measurements beside it, and pages that show it."""
+
+import asyncio
+import io
+import logging
+from collections.abc import Callable
+from contextlib import redirect_stdout
+from dataclasses import dataclass
+from ipaddress import ip_address
+from threading import Event as ThreadEvent
+from typing import get_args
+
+from viser import CameraHandle, ClientHandle, ViserServer
+
+from app.events import Event, Reconstructed
+from app.measuring import measure
+from app.page import PageEvent
+from app.page_view import BRAND_COLOR, PageView
+from app.panels import Panels
+from app.pictures import Pictures
+from app.scene_view import SceneView
+from app.session import Session, step
+from rotrecon.drawing import Drawing
+from rotrecon.frame import Frame
+from rotrecon.settings import Settings
+
+CLOUD_POINTS = 40_000
+"""Points of the cloud that are sent to a page: half a megabyte."""
+PROGRESS_AFTER_S = 0.5
+"""A measurement that takes longer than this is seen to be under way."""
+log = logging.getLogger(__name__)
+
+
+@dataclass(frozen=True)
+class PageOpened:
+    client: ClientHandle
+
+
+@dataclass(frozen=True)
+class PageClosed:
+    client_id: int
+
+
+@dataclass(frozen=True)
+class CameraMoved:
+    """A page's camera or canvas has changed; what is shown there may have to be fitted again."""
+
+
+@dataclass(frozen=True)
+class TakesLong:
+    revision: int
+
+
+@dataclass(frozen=True)
+class FromPage:
+    client_id: int
+    event: Event | PageEvent
+
+
+Item = PageOpened | PageClosed | CameraMoved | TakesLong | FromPage | Reconstructed
+
+
+class Console:
+    """One frame, shown to any number of pages.
+
+    Everything that happens is put on one queue, in viser's event loop; there it steps the session, starts at most one
+    measurement at a time in a thread, and is shown. `idle` tells when nothing of that is left to do.
+    """
+
+    def __init__(
+        self,
+        frame: Frame,
+        name: str,
+        settings: Settings,
+        host: str = "127.0.0.1",
+        port: int = 8080,
+        *,
+        notes: tuple[str, ...] = (),
+        cloud_points: int = CLOUD_POINTS,
+    ) -> None:
+        self.session = Session((frame.camera.width, frame.camera.height))
+        self._frame, self._name, self._settings, self._notes = frame, name, settings, notes
+        self._host, self._port, self._cloud_points = host, port, cloud_points
+        self._pages: dict[int, PageView] = {}
+        self._measuring: asyncio.Task[None] | None = None
+        self._takes_long = False
+
+    @property
+    def address(self) -> str:
+        """The address that was really got, which is another port when the one asked for is taken."""
+        host = f"[{self._host}]" if ":" in self._host else self._host
+        return f"http://{host}:{self.server.get_port()}"
+
+    def start(self) -> None:
+        """Open the server and show the frame; returns when pages can be opened."""
+        with redirect_stdout(io.StringIO()):
+            self.server = ViserServer(self._host, self._port, verbose=False)
+        self.server.request_share_url = _refuse_to_share
+        self._loop = self.server.get_event_loop()
+        self._queue: asyncio.Queue[Item] = asyncio.Queue()
+        self._settled = asyncio.Event()
+        self._pictures = Pictures(self._frame)
+        self.server.gui.configure_theme(
+            dark_mode=True, show_logo=False, show_share_button=False, brand_color=BRAND_COLOR
+        )
+        self._panels = Panels(self.server, self._name, self._notes, self._post_from)
+        self._scene = SceneView(
+            self.server, self._frame, self._pictures.television(None, "picture"), self._cloud_points
+        )
+        self._panels.show(self.session, measuring=False)
+        self._running = asyncio.run_coroutine_threadsafe(self._run(), self._loop)
+        self.server.on_client_connect(self._page_opened)
+        self.server.on_client_disconnect(self._page_closed)
+
+    def stop(self) -> None:
+        """Close the server and every page."""
+        self._running.cancel()
+        self.server.stop()
+
+    async def idle(self) -> None:
+        """Return, in viser's event loop, when the queue is empty, nothing is measured, and all is shown and flushed."""
+        await self._settled.wait()
+
+    def wait_until_idle(self, timeout_s: float = 30.0) -> None:
+        """`idle` for other threads."""
+        asyncio.run_coroutine_threadsafe(self.idle(), self._loop).result(timeout_s)
+
+    def post(self, item: Item) -> None:
+        """Put something on the queue; only in viser's event loop."""
+        self._settled.clear()
+        self._queue.put_nowait(item)
+
+    async def _run(self) -> None:
+        """Take what has happened, as much as there is, then show what has become of it."""
+        while True:
+            items = [await self._queue.get()]
+            while not self._queue.empty():
+                items.append(self._queue.get_nowait())
+            opened = [item.client for item in items if isinstance(item, PageOpened)]
+            for item in items:
+                self._take(item)
+            self._measure_latest()
+            await asyncio.to_thread(self._show, opened)
+            self.server.flush()
+            if self._queue.empty() and self._measuring is None:
+                self._settled.set()
+
+    def _take(self, item: Item) -> None:
+        match item:
+            case FromPage(client_id, event):
+                if isinstance(event, get_args(Event)):
+                    self.session = step(self.session, event)
+                elif client_id in self._pages:
+                    self._pages[client_id].take(event, self.session)
+            case Reconstructed():
+                self.session = step(self.session, item)
+                self._measuring = None
+                self._takes_long = False
+            case TakesLong(revision):
+                self._takes_long = self._measuring is not None and revision == self.session.revision
+            case PageClosed(client_id):
+                self._pages.pop(client_id, None)
+            case PageOpened() | CameraMoved():
+                pass
+
+    def _measure_latest(self) -> None:
+        """Start measuring the drawing as it is now, unless that is done or another one is still being measured."""
+        drawing = self.session.shown.complete
+        if drawing is not None and not self.session.up_to_date and self._measuring is None:
+            self._measuring = asyncio.create_task(self._measure(self.session.revision, drawing))
+
+    async def _measure(self, revision: int, drawing: Drawing) -> None:
+        alarm = self._loop.call_later(PROGRESS_AFTER_S, self.post, TakesLong(revision))
+        outcome = await asyncio.to_thread(measure, self._frame, drawing, self._settings)
+        alarm.cancel()
+        self.post(Reconstructed(revision, outcome))
+
+    def _show(self, opened: list[ClientHandle]) -> None:
+        """Show the session on every page; runs in a thread, and only one at a time."""
+        for client in opened:
+            self._pages[client.client_id] = self._new_page(client)
+        self._panels.show(self.session, self._takes_long)
+        self._scene.show(self.session.reconstruction)
+        for client_id, page in list(self._pages.items()):
+            try:
+                page.show(self.session)
+            except Exception:
+                if client_id in self.server.get_clients():
+                    log.exception("page %d cannot be shown", client_id)
+
+    def _new_page(self, client: ClientHandle) -> PageView:
+        client.camera.on_update(self._camera_moved)
+        return PageView(
+            client,
+            self._pictures,
+            self._panels,
+            self._scene,
+            lambda event: self._post_from(client.client_id, event),
+        )
+
+    def _post_from(self, client_id: int, event: Event | PageEvent) -> None:
+        self.post(FromPage(client_id, event))
+
+    async def _page_opened(self, client: ClientHandle) -> None:
+        self.post(PageOpened(client))
+
+    async def _page_closed(self, client: ClientHandle) -> None:
+        self.post(PageClosed(client.client_id))
+
+    async def _camera_moved(self, camera: CameraHandle) -> None:
+        page = self._pages.get(camera.client.client_id)
+        if page is not None and page.state.view == "camera":
+            self.post(CameraMoved())
+
+
+def serve(
+    frame: Frame,
+    name: str,
+    settings: Settings,
+    host: str = "127.0.0.1",
+    port: int = 8080,
+    *,
+    notes: tuple[str, ...] = (),
+    announce: Callable[[str], None] = print,
+) -> None:
+    """Serve the console until interrupted; says where it is to be found, and whether others can reach it."""
+    console = Console(frame, name, settings, host, port, notes=notes)
+    console.start()
+    try:
+        for line in (*notes, *announcements(host, port, console.server.get_port(), console.address)):
+            announce(line)
+        ThreadEvent().wait()
+    except KeyboardInterrupt:
+        announce("Closed.")
+    finally:
+        console.stop()
+
+
+def announcements(host: str, asked_port: int, port: int, address: str) -> tuple[str, ...]:
+    """What has to be said when the server is open."""
+    lines: list[str] = []
+    if port != asked_port:
+        lines.append(f"Port {asked_port} is taken; using {port} instead.")
+    if not _is_loopback(host):
+        lines.append(
+            f"WARNING: listening on {host}: everybody who can reach this machine can see the picture and draw on it. "
+            "Nobody is asked for a password. Leave --host out to keep it to this machine."
+        )
+    return (*lines, f"The console is open at {address}  (Ctrl+C closes it)")
+
+
+def _is_loopback(host: str) -> bool:
+    try:
+        return ip_address(host).is_loopback
+    except ValueError:
+        return host == "localhost"
+
+
+def _refuse_to_share(verbose: bool = True) -> None:
+    """Viser's public tunnel would show a robot's cell to the world."""
+    log.warning("a page asked for a public share link and was refused")

@@ -1,0 +1,110 @@
+"""What one page shows, which is nobody else's business: its view, zoom, layers and the section it looks at."""
+
+from dataclasses import dataclass, replace
+from math import isfinite
+from typing import Literal, get_args
+
+from app.object_drawing import Pixel
+
+ViewName = Literal["camera", "3D"]
+LayerName = Literal["segmentation", "depth map", "model", "picture"]
+VIEWS: tuple[ViewName, ...] = get_args(ViewName)
+LAYERS: tuple[LayerName, ...] = get_args(LayerName)
+ZOOM_STEP = 1.5
+LARGEST_ZOOM = 16.0
+"""A pixel is then as large as a fingertip."""
+
+
+@dataclass(frozen=True)
+class PageState:
+    """The choices made on one page."""
+
+    view: ViewName = "camera"
+    depth_opacity: float = 0.0
+    layer: LayerName = "segmentation"
+    zoom: float = 1.0
+    last_point_px: Pixel | None = None
+    """Where the pointer last did something: the crop's middle, and what zooming goes for."""
+    center_px: Pixel | None = None
+    """What the zoomed view looks at; None for the middle of the picture."""
+    section: int = 0
+    dark: bool = True
+
+
+@dataclass(frozen=True)
+class ViewChosen:
+    view: ViewName
+
+
+@dataclass(frozen=True)
+class OpacityChosen:
+    opacity: float
+
+
+@dataclass(frozen=True)
+class LayerChosen:
+    layer: LayerName
+
+
+@dataclass(frozen=True)
+class Zoomed:
+    """In by a number of steps, out by a negative one, or back to the whole picture by None."""
+
+    steps: int | None
+
+
+@dataclass(frozen=True)
+class PointTouched:
+    point_px: Pixel
+
+
+@dataclass(frozen=True)
+class SectionChosen:
+    section: int
+
+
+@dataclass(frozen=True)
+class SectionStepped:
+    by: int
+
+
+@dataclass(frozen=True)
+class DarkChosen:
+    dark: bool
+
+
+PageEvent = (
+    ViewChosen | OpacityChosen | LayerChosen | Zoomed | PointTouched | SectionChosen | SectionStepped | DarkChosen
+)
+
+
+def page_step(page: PageState, event: PageEvent, section_count: int) -> PageState:
+    """The page after an event; values a page could not have sent by its controls change nothing."""
+    match event:
+        case ViewChosen(view) if view in VIEWS:
+            return replace(page, view=view)
+        case OpacityChosen(opacity) if isfinite(opacity):
+            return replace(page, depth_opacity=min(max(opacity, 0.0), 1.0))
+        case LayerChosen(layer) if layer in LAYERS:
+            return replace(page, layer=layer)
+        case Zoomed(steps):
+            return _zoomed(page, steps)
+        case PointTouched(point) if all(isfinite(value) for value in point):
+            return replace(page, last_point_px=point)
+        case SectionChosen(section):
+            return replace(page, section=_within(section, section_count))
+        case SectionStepped(by):
+            return replace(page, section=_within(page.section + by, section_count))
+        case DarkChosen(dark):
+            return replace(page, dark=dark)
+        case _:
+            return page
+
+
+def _zoomed(page: PageState, steps: int | None) -> PageState:
+    zoom = 1.0 if steps is None else min(max(page.zoom * ZOOM_STEP**steps, 1.0), LARGEST_ZOOM)
+    return replace(page, zoom=zoom, center_px=None if zoom == 1.0 else page.last_point_px)
+
+
+def _within(section: int, count: int) -> int:
+    return min(max(section, 0), max(count - 1, 0))

@@ -1,0 +1,131 @@
+"""The docked panels' parts that belong to one page: its layers, its crop, its section."""
+
+from collections.abc import Callable
+from html import escape
+from typing import Any
+
+import numpy as np
+from viser import ClientHandle, GuiEvent
+
+from app.charts import (
+    CHART_HEIGHT_PX,
+    RADIUS_AXES,
+    RADIUS_SERIES,
+    radius_chart,
+    radius_scales,
+    section_count,
+    section_svg,
+    section_text,
+)
+from app.events import Event, SectionToggled
+from app.page import LAYERS, DarkChosen, LayerChosen, OpacityChosen, PageEvent, PageState, SectionChosen
+from app.panels import Panels
+from app.pictures import Pictures
+from rotrecon.overlay import LIGHT_BLUE, NAVY, RED, YELLOW
+from rotrecon.reconstruct import Reconstruction
+
+JPEG_QUALITY = 80
+LEGEND = (("object", RED), ("accepted", YELLOW), ("close", LIGHT_BLUE), ("distant", NAVY))
+
+
+class PagePanels:
+    """Controls of one page, in the tabs that all pages share."""
+
+    def __init__(
+        self, client: ClientHandle, shared: Panels, pictures: Pictures, post: Callable[[Event | PageEvent], None]
+    ) -> None:
+        self._gui, self._pictures, self._post = client.gui, pictures, post
+        self._section = 0
+        with shared.sections:
+            self._add_sections()
+        with shared.picture:
+            self._add_picture()
+        self._television_of: object = None
+        self._crop_of: object = None
+        self._sections_of: object = None
+
+    def show(self, result: Reconstruction | None, page: PageState, excluded: frozenset[int], moving: bool) -> None:
+        """Bring this page's panels up to date; pictures wait for the end of a drag."""
+        if not moving:
+            self._show_television(result, page)
+        self._show_sections(result, page, excluded)
+
+    def _show_television(self, result: Reconstruction | None, page: PageState) -> None:
+        if self._television_of != (result, page.layer):
+            self._television_of = (result, page.layer)
+            self._television.image = self._pictures.television(result, page.layer)
+        if page.last_point_px is not None and self._crop_of != page.last_point_px:
+            self._crop_of = page.last_point_px
+            self._crop.image = self._pictures.crop(page.last_point_px)
+            self._crop.visible = True
+
+    def _show_sections(self, result: Reconstruction | None, page: PageState, excluded: frozenset[int]) -> None:
+        if self._sections_of == (result, page.section, excluded):
+            return
+        self._sections_of = (result, page.section, excluded)
+        count, section = section_count(result), page.section
+        chart = radius_chart(result, section)
+        self._chart.data = chart
+        scales = radius_scales(chart)
+        if scales != self._chart.scales:
+            self._chart.scales = scales
+        self._section = section
+        if self._slider.max != max(count, 2):
+            self._slider.max = max(count, 2)
+        if self._slider.value != section + 1:
+            self._slider.value = section + 1
+        self._slider.disabled = self._exclude.disabled = count == 0
+        self._exclude.label = "Put this section back" if section in excluded else "Exclude this section"
+        text = escape(section_text(result, section))
+        self._plane.content = (
+            f'<div class="rr-caption" data-testid="section">{text}</div>{section_svg(result, section)}'
+        )
+
+    def _add_sections(self) -> None:
+        chart = radius_chart(None, 0)
+        self._chart = self._gui.add_uplot(
+            chart,
+            RADIUS_SERIES,
+            axes=RADIUS_AXES,
+            scales=radius_scales(chart),
+            legend={"show": True, "live": False},
+            height=CHART_HEIGHT_PX,
+            padding=(8, 12, 0, 0),
+        )
+        self._slider = self._gui.add_slider("Section", 1, 2, 1, 1, disabled=True, hint="Z and X step")
+        self._plane = self._gui.add_html("")
+        self._exclude = self._gui.add_button("Exclude this section", disabled=True)
+        self._slider.on_update(self._choosing(lambda number: SectionChosen(int(number) - 1)))
+        self._exclude.on_click(self._choosing(lambda _: SectionToggled(self._section)))
+
+    def _add_picture(self) -> None:
+        opacity = self._gui.add_slider("Depth over the picture, %", 0, 100, 5, 0)
+        opacity.on_update(self._choosing(lambda percent: OpacityChosen(float(percent) / 100)))
+        near_m, far_m = self._pictures.depth_range_m
+        ends = f"<span>{1000 * near_m:.0f} mm</span><span>{1000 * far_m:.0f} mm</span>"
+        self._gui.add_html(f'<div class="rr-caption"><div class="rr-bar"></div><div class="rr-ends">{ends}</div></div>')
+        layer = self._gui.add_dropdown("Frame shows", LAYERS, initial_value="segmentation")
+        layer.on_update(self._choosing(LayerChosen))
+        self._television = self._gui.add_image(
+            np.zeros((2, 2, 3), dtype=np.uint8), format="jpeg", jpeg_quality=JPEG_QUALITY
+        )
+        colors = "".join(f'<span class="rr-key" style="background:rgb{color}"></span>{name}' for name, color in LEGEND)
+        self._gui.add_html(f'<div class="rr-caption">Segmentation:{colors}</div>')
+        self._crop = self._gui.add_image(
+            np.zeros((2, 2, 3), dtype=np.uint8),
+            label="Round the last point",
+            format="jpeg",
+            jpeg_quality=JPEG_QUALITY,
+            visible=False,
+        )
+        dark = self._gui.add_checkbox("Dark page", True)
+        dark.on_update(self._choosing(DarkChosen))
+
+    def _choosing(self, event_of: Callable[[Any], Event | PageEvent]) -> Any:
+        """A callback that posts the event a value stands for, when the page and not the program has set it."""
+
+        async def chosen(event: GuiEvent[Any]) -> None:
+            if event.client_id is not None:
+                self._post(event_of(event.target.value))
+
+        return chosen

@@ -1,0 +1,127 @@
+"""One open page: what it shows of the session, its own choices, and what is done on its picture."""
+
+from collections.abc import Callable
+
+import numpy as np
+from viser import ClientHandle, SceneNodeDragEvent, SceneNodePointerEvent
+
+from app.camera_view import CameraView
+from app.charts import section_count
+from app.events import Event, HandleMoved, PointerDragged, VertexClicked
+from app.object_drawing import Part, Pixel
+from app.page import PageEvent, PageState, PointTouched, page_step
+from app.page_panels import PagePanels
+from app.panels import Panels
+from app.pictures import Pictures
+from app.pointer import PixelFinder
+from app.scene_view import SceneView
+from app.session import Session
+from rotrecon.reconstruct import Reconstruction
+
+NOTICE_SECONDS = 10.0
+BRAND_COLOR = (60, 147, 208)
+
+
+class PageView:
+    """The handles of one page; everything it shows is told to it."""
+
+    def __init__(
+        self,
+        client: ClientHandle,
+        pictures: Pictures,
+        shared: Panels,
+        scene: SceneView,
+        post: Callable[[Event | PageEvent], None],
+    ) -> None:
+        self.client, self.state = client, PageState()
+        self._pictures, self._scene, self._post = pictures, scene, post
+        self._pixels = PixelFinder(pictures.frame)
+        self._panels = PagePanels(client, shared, pictures, post)
+        self._camera_view = CameraView(client, pictures.frame, pictures.frame.image, self._handle_dragged)
+        self._world = client.scene.add_frame("/world", show_axes=False)
+        self._picture_of: object = (None, 0.0, None)
+        self._lit: object = None
+        self._view = ""
+        self._dark = True
+        self._notice_number = 0
+        self._world_pose: tuple[np.ndarray, ...] | None = None
+        picture = self._camera_view.picture
+        picture.on_click(self._clicked)
+        picture.on_drag("left")(self._dragged)
+        picture.on_drag("left", modifier="shift")(self._dragged)
+
+    def take(self, event: PageEvent, session: Session) -> None:
+        """Follow a choice made on this page."""
+        self.state = page_step(self.state, event, section_count(session.reconstruction))
+
+    def show(self, session: Session) -> None:
+        """Bring everything on this page up to date."""
+        result, page = session.reconstruction, self.state
+        moving = session.preview is not None or not session.up_to_date
+        self._show_view()
+        if page.view == "camera":
+            self._camera_view.look(page)
+        self._camera_view.show(session.shown, session.vertices_px, page)
+        if not moving:
+            self._show_picture(result)
+        if self._lit != (result, page.section, page.view) and page.view == "3D":
+            self._lit = (result, page.section, page.view)
+            self._scene.light_section(self.client, result, page)
+        self._panels.show(result, page, session.shown.excluded_sections, moving)
+        self._show_notice(session)
+
+    def _show_view(self) -> None:
+        """Change the standpoint, and what is seen from it, when the other view was chosen."""
+        page = self.state
+        if page.dark != self._dark:
+            self._dark = page.dark
+            self.client.gui.configure_theme(
+                dark_mode=page.dark, show_logo=False, show_share_button=False, brand_color=BRAND_COLOR
+            )
+        if page.view == self._view:
+            return
+        in_camera, camera = page.view == "camera", self.client.camera
+        if in_camera and self._view:
+            self._world_pose = (camera.up_direction, camera.position, camera.look_at)
+        self._view = page.view
+        self._camera_view.set_visible(in_camera)
+        self._world.visible = not in_camera
+        if in_camera:
+            self._lit = None
+            self._scene.hide_section(self.client)
+        else:
+            self._scene.look(self.client, self._world_pose)
+
+    def _show_picture(self, result: Reconstruction | None) -> None:
+        page = self.state
+        key = (result, page.depth_opacity, None if result is None else page.section)
+        if key != self._picture_of:
+            self._picture_of = key
+            self._camera_view.picture.image = self._pictures.camera_view(result, page.depth_opacity, page.section)
+
+    def _show_notice(self, session: Session) -> None:
+        notice = session.notice
+        if notice is not None and notice.number > self._notice_number:
+            self._notice_number = notice.number
+            self.client.add_notification(notice.title, notice.text, color="orange", auto_close_seconds=NOTICE_SECONDS)
+
+    async def _clicked(self, event: SceneNodePointerEvent) -> None:
+        point = self._pixels.clicked(event)
+        self._post(PointTouched(point))
+        self._post(VertexClicked(point, self._camera_view.closing_reach_px(self.state)))
+
+    async def _dragged(self, event: SceneNodeDragEvent) -> None:
+        start, end = self._pixels.dragged(event)
+        if event.phase != "start":
+            self._touched(event, end)
+            self._post(PointerDragged(start, end, event.modifier == "shift", event.phase == "end"))
+
+    def _handle_dragged(self, part: Part, index: int, event: SceneNodeDragEvent) -> None:
+        _, end = self._pixels.dragged(event)
+        if event.phase != "start":
+            self._touched(event, end)
+            self._post(HandleMoved(part, index, end, event.phase == "end"))
+
+    def _touched(self, event: SceneNodeDragEvent, point: Pixel) -> None:
+        if event.phase == "end":
+            self._post(PointTouched(point))

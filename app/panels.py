@@ -1,0 +1,109 @@
+"""The docked panels that all pages share: what to do next, the result, the drawing's controls, and the keys."""
+
+from collections.abc import Callable
+from html import escape
+from typing import Any
+
+from viser import GuiEvent, ViserServer
+
+from app.events import (
+    Cancelled,
+    Cleared,
+    Event,
+    KindChosen,
+    PolygonClosed,
+    Redone,
+    ToolChosen,
+    Undone,
+    VertexTakenBack,
+)
+from app.object_drawing import PARTS
+from app.page import PageEvent, SectionStepped, ViewChosen, Zoomed
+from app.result_text import hint_html, result_html, why_html
+from app.session import Session
+from app.static_files import static_text
+from rotrecon.primitives import KINDS
+
+PANEL_WIDTH_PX = 390
+AUTO = "auto"
+POLYGON = {"Close": PolygonClosed(), "Corner back": VertexTakenBack(), "Cancel": Cancelled()}
+HISTORY = {"Undo": Undone(), "Redo": Redone(), "Clear": Cleared()}
+VIEW = {"Camera": ViewChosen("camera"), "3D": ViewChosen("3D")}
+ZOOM = {"In": Zoomed(1), "Out": Zoomed(-1), "Whole": Zoomed(None)}
+KEYS: tuple[tuple[str, Any, Any, Event | PageEvent], ...] = (
+    ("Camera view", "C", None, ViewChosen("camera")),
+    ("3D view", "V", None, ViewChosen("3D")),
+    ("Zoom in", "R", None, Zoomed(1)),
+    ("Zoom out", "F", None, Zoomed(-1)),
+    ("Previous section", "Z", None, SectionStepped(-1)),
+    ("Next section", "X", None, SectionStepped(1)),
+    ("Close the polygon", "enter", None, PolygonClosed()),
+    ("Take back a corner", "backspace", None, VertexTakenBack()),
+    ("Drop what was begun", "escape", None, Cancelled()),
+    ("Undo", "Z", "cmd/ctrl", Undone()),
+    ("Redo", "Z", "cmd/ctrl+shift", Redone()),
+)
+
+Post = Callable[[int, Event | PageEvent], None]
+"""Takes an event from a page, by its client's number."""
+
+
+class Panels:
+    """Controls and texts that belong to the server, so that all pages show the same."""
+
+    def __init__(self, server: ViserServer, name: str, notes: tuple[str, ...], post: Post) -> None:
+        self._gui, self._post = server.gui, post
+        self._gui.set_panel_label("rotrecon")
+        self._gui.main_panel.dock_right()
+        self._gui.main_panel.set_width(PANEL_WIDTH_PX)
+        self._gui.add_html(f"<style>{static_text('console.css')}</style>")
+        self._hint = self._gui.add_html("")
+        self._result = self._gui.add_html("")
+        self._add_controls()
+        self._add_keys()
+        panel = self._gui.add_panel()
+        self.sections, self.picture, why, keys = (panel.add_tab(t) for t in ("Sections", "Picture", "Why", "Help"))
+        with why:
+            self._why = self._gui.add_html("")
+        with keys:
+            about = "".join(f"<p>{escape(line)}</p>" for line in (name, *notes))
+            self._gui.add_html(static_text("help.html") + f'<div class="rr-help"><h4>Scene</h4>{about}</div>')
+        panel.dock_below(self._gui.main_panel)
+
+    def show(self, session: Session, measuring: bool) -> None:
+        """Bring texts and controls up to date, sending only what has changed."""
+        _set(self._hint, "content", hint_html(session, measuring))
+        _set(self._result, "content", result_html(session))
+        _set(self._kind, "value", session.shown.kind or AUTO)
+        _set(self._tool, "value", session.tool)
+        if session.preview is None:
+            _set(self._why, "content", why_html(session))
+
+    def _add_controls(self) -> None:
+        self._tool = self._gui.add_dropdown("A drag draws", PARTS, initial_value="area", hint="Shift + drag: the axis")
+        self._kind = self._gui.add_dropdown("Object is a", (AUTO, *KINDS), initial_value=AUTO)
+        self._tool.on_update(self._choosing(ToolChosen))
+        self._kind.on_update(self._choosing(lambda value: KindChosen(None if value == AUTO else value)))
+        for label, events in (("Drawing", HISTORY), ("Polygon", POLYGON), ("View", VIEW), ("Zoom", ZOOM)):
+            self._gui.add_button_group(label, tuple(events)).on_click(self._choosing(events.get))
+
+    def _add_keys(self) -> None:
+        for label, key, modifier, event in KEYS:
+            command = self._gui.add_command(label, hotkey=key, modifier=modifier)
+            command.on_trigger(self._choosing(lambda _, event=event: event, read=False))
+
+    def _choosing(self, event_of: Callable[[Any], Event | PageEvent | None], read: bool = True) -> Any:
+        """A callback that posts the event a value stands for, when a page and not the program has set it."""
+
+        async def chosen(event: GuiEvent[Any]) -> None:
+            made = event_of(event.target.value if read else None)
+            if made is not None and event.client_id is not None:
+                self._post(event.client_id, made)
+
+        return chosen
+
+
+def _set(handle: Any, name: str, value: Any) -> None:
+    """Send an attribute only when it is another one."""
+    if getattr(handle, name) != value:
+        setattr(handle, name, value)
