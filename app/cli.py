@@ -80,7 +80,11 @@ def _print_answer(content: dict[str, object], as_json: bool) -> None:
 
 def _write_overlay(path: Path, result: Reconstruction) -> None:
     image = with_outlines(with_segmentation(result.frame.image, result), outlines(result))
-    write_whole(path, encode_png(image))
+    try:
+        write_whole(path, encode_png(image))
+    except OSError as error:
+        remedy = "name a file in a folder where you may write"
+        raise SceneError(path, "the overlay", f"cannot be written ({error.strerror})", remedy) from error
 
 
 @cli.command()

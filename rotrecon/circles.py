@@ -86,7 +86,8 @@ def circumcircles(points_m: Floats, count: Indices, settings: Settings) -> Secti
     center = end + np.cross(lever, normal) / scale
     radius = np.linalg.norm(center - start, axis=1)
     outward = (middle - center) / radius[:, None]
-    chord_side = (((start + end) / 2 - center) * outward).sum(axis=1)
-    half_arc = np.arctan2(np.sqrt(chord2) / 2, chord_side)
+    to_chord = (start + end) / 2 - center
+    before_chord = np.copysign(np.linalg.norm(to_chord, axis=1), (to_chord * outward).sum(axis=1))
+    half_arc = np.arctan2(np.sqrt(chord2) / 2, before_chord)
     concave = (outward * middle).sum(axis=1) > 0
     return SectionCircles(state, center, radius, points_m, 2 * half_arc, concave)

@@ -21,6 +21,7 @@ class FailureReason(StrEnum):
     TOO_FEW_SECTIONS = "too_few_sections"
     NO_AXIS = "no_axis"
     NOT_THIS_KIND = "not_this_kind"
+    NOT_ROUND = "not_round"
 
 
 @dataclass(frozen=True)

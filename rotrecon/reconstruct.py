@@ -132,6 +132,12 @@ def _with_solid(result: Reconstruction, first: Cut, second: Cut, axis: Axis, sec
         advice = f"the sections do not form a {kind}; choose another kind, or let the program decide"
         return replace(result, candidates=candidates, fit=FitFailure(FailureReason.NOT_THIS_KIND, advice))
     fit = fit_solid(radii, kind, axis, circles, sections, settings)
+    if fit.rms_m > settings.rms_over_radius * float(fit.solid.radius_at(0.0)):
+        advice = (
+            f"the pixels lie {1000 * fit.rms_m:.1f} mm off the best {fit.solid.kind}; "
+            "draw the axis along the object, and the area close round it"
+        )
+        return replace(result, candidates=candidates, fit=FitFailure(FailureReason.NOT_ROUND, advice))
     T_base_camera = result.frame.T_base_camera
     solid = fit.solid.moved(T_base_camera)
     return replace(

@@ -33,6 +33,8 @@ class Settings:
     """At most so many cuts across the axis in space; all but axes that run into the picture settle in one or two."""
     axis_settled_rad: float = 0.02
     """A turn of the axis below this changes the radius by less than 0.02 %."""
+    rms_over_radius: float = 0.3
+    """Pixels that lie farther off a solid than this share of its radius do not lie on it."""
     rod_length_over_diameter: float = 8.0
     """A cylinder at least this long for its diameter, and thin, is a rod (paper table 1: extended, thin)."""
     rod_diameter_m: float = 0.030

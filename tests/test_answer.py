@@ -1,0 +1,65 @@
+import json
+
+import numpy as np
+import pytest
+
+from rotrecon.answer import answer, cannot
+from rotrecon.drawing import AreaOfInterest, Drawing, ObjectAxis
+from rotrecon.frame import Frame
+from rotrecon.primitives import Sphere
+from rotrecon.reconstruct import reconstruct
+from rotrecon.settings import Settings
+from tests.exact import CAMERA, cone, cylinder, drawing_along, exact_frame
+
+FIELDS = [
+    "kind", "certain", "margin", "concave", "diameter_mm", "interval_mm", "length_mm", "center_m", "axis",
+    "half_angle_deg", "profile", "rms_mm", "arc_deg", "sections", "tool", "contact", "reasons", "candidates",
+    "frame", "method",
+]  # fmt: skip
+
+
+def answer_for(solid, kind=None):
+    return answer(reconstruct(exact_frame(solid), drawing_along(solid, 0.7, kind=kind), Settings()))
+
+
+def test_answers_have_every_field_and_are_strict_json():
+    wall = Frame(np.zeros((240, 320, 3), np.uint8), CAMERA.cloud(np.full((240, 320), 1.0)), CAMERA)
+    drawing = Drawing(AreaOfInterest.rectangle((60, 60), (260, 190)), ObjectAxis((160, 70), (160, 180)))
+    body = cylinder(np.array([0, 0, 0.8]), np.array([0, 1.0, 0.3]), 0.08)
+    for content in (answer_for(body), answer(reconstruct(wall, drawing, Settings())), cannot("no", "paper")):
+        assert sorted(content) == sorted(FIELDS)
+        assert json.loads(json.dumps(content, allow_nan=False)) == content
+
+
+def test_cylinder_in_numbers():
+    content = answer_for(cylinder(np.array([0, 0, 0.8]), np.array([0, 1.0, 0.3]), 0.08))
+    assert content["kind"] == "cylinder"
+    assert content["diameter_mm"] == pytest.approx(80, rel=1e-3)
+    assert content["axis"]["direction"] == pytest.approx(np.array([0, 1, 0.3]) / np.hypot(1, 0.3), abs=1e-3)
+    assert content["tool"] == "mechanical cutter"
+    assert content["reasons"] == []
+    assert content["half_angle_deg"] is None
+    assert content["sections"]["used"] == len(content["profile"])
+    along, diameters = np.array(content["profile"], dtype=object)[:, :2].astype(float).T
+    assert diameters == pytest.approx(80, rel=2e-3)
+    assert np.ptp(along) < content["length_mm"] < 1.05 * np.ptp(along)
+    assert sum(c["score"] for c in content["candidates"]) == pytest.approx(1, abs=1e-3)
+
+
+def test_paper_method_claims_no_certainty():
+    content = answer_for(cylinder(np.array([0, 0, 0.8]), np.array([0, 1.0, 0.3]), 0.08))
+    assert (content["certain"], content["margin"], content["interval_mm"]) == (False, None, None)
+
+
+def test_sphere_has_no_axis_and_a_cone_has_an_angle():
+    ball = answer_for(Sphere(np.array([0, 0, 0.8]), np.array([0, 1.0, 0]), 0.1))
+    assert (ball["kind"], ball["axis"], ball["length_mm"]) == ("sphere", None, None)
+    body = answer_for(cone(np.array([0, 0, 0.7]), np.array([0, 1.0, 0]), 0.1, 12, 0.2))
+    assert body["kind"] == "cone"
+    assert body["half_angle_deg"] == pytest.approx(12, abs=0.3)
+
+
+def test_rod_is_called_so_among_the_candidates():
+    content = answer_for(cylinder(np.array([0, 0, 0.6]), np.array([0, 1.0, 0]), 0.02, 0.3))
+    assert content["kind"] == "rod"
+    assert content["candidates"][0]["kind"] == "rod"

@@ -1,0 +1,164 @@
+import json
+import sys
+from pathlib import Path
+
+import cv2
+import numpy as np
+import pytest
+
+from app.cli import main
+from rotrecon.frame import Frame
+from rotrecon.scene import SceneRecord, write_scene
+from rotrecon.simulate import simulate
+from rotrecon.truth import write_simulated
+from tests.exact import CAMERA
+from tests.recordings import recording
+
+GREY = np.full((240, 320, 3), 128, np.uint8)
+
+
+@pytest.fixture(scope="module")
+def scene(tmp_path_factory: pytest.TempPathFactory) -> Path:
+    folder = tmp_path_factory.mktemp("scenes") / "pipe"
+    write_simulated(folder, simulate("pipe", 3, supersampling=1))
+    return folder
+
+
+@pytest.fixture
+def rotrecon(monkeypatch: pytest.MonkeyPatch, capfd: pytest.CaptureFixture[str]):
+    def run(*arguments: object) -> tuple[int, str, str]:
+        monkeypatch.setattr(sys, "argv", ["rotrecon", *map(str, arguments)])
+        with pytest.raises(SystemExit) as stop:
+            main()
+        out, err = capfd.readouterr()
+        return int(stop.value.code or 0), out, err
+
+    return run
+
+
+def drawing_of(scene: Path) -> list[str]:
+    truth = json.loads((scene / "truth.json").read_text())
+    return ["--area", truth["area"], "--axis", truth["axis"]]
+
+
+def test_fit_prints_one_json_object_and_draws_it(rotrecon, scene, tmp_path):
+    code, out, err = rotrecon("fit", scene, *drawing_of(scene), "--json", "--overlay", tmp_path / "out.png")
+    assert (code, err) == (0, "")
+    assert out.count("\n") == 1
+    assert json.loads(out)["kind"] == "cylinder"
+    assert cv2.imread(str(tmp_path / "out.png")).shape == (480, 640, 3)
+    assert [path.name for path in tmp_path.iterdir()] == ["out.png"]
+
+
+def test_fit_in_words(rotrecon, scene):
+    code, out, _ = rotrecon("fit", scene, *drawing_of(scene))
+    assert code == 0
+    assert "mm in diameter" in out
+    assert "tool: mechanical cutter" in out
+
+
+def test_kind_and_tools_can_be_given(rotrecon, scene, tmp_path):
+    table = tmp_path / "tools.toml"
+    table.write_text('[saw]\nname = "saw"\ntakes = ["cylinder", "cone"]\ndiameter_mm = [1, 500]\n')
+    code, out, _ = rotrecon("fit", scene, *drawing_of(scene), "--kind", "cone", "--tools", table, "--json")
+    assert code == 0
+    assert json.loads(out)["kind"] == "cone"
+    assert json.loads(out)["tool"] == "saw"
+
+
+def test_honest_cannot_is_json_with_exit_code_3(rotrecon, tmp_path):
+    depth = np.random.default_rng(0).normal(1.0, 0.001, (240, 320))
+    write_scene(tmp_path / "wall", SceneRecord("wall", Frame(GREY, CAMERA.cloud(depth), CAMERA)))
+    drawing = ["--area", "60,60 260,190", "--axis", "160,70 160,180"]
+    code, out, _ = rotrecon("fit", tmp_path / "wall", *drawing, "--json", "--overlay", tmp_path / "out.png")
+    answer = json.loads(out)
+    assert code == 3
+    assert answer["kind"] is None
+    assert len(answer["reasons"]) == 1
+    assert (tmp_path / "out.png").exists(), "what was segmented explains the refusal"
+    code, out, _ = rotrecon("fit", tmp_path / "wall", *drawing)
+    assert code == 3
+    assert out.startswith("No result:")
+
+
+def test_views_are_an_honest_cannot(rotrecon):
+    code, out, _ = rotrecon(
+        "fit", recording("virtual_stereo"), "--area", "5,5 60,60", "--axis", "30,10 30,55", "--json"
+    )
+    assert code == 3
+    assert "stereo matching" in json.loads(out)["reasons"][0]
+
+
+@pytest.mark.parametrize("name", ["tin", "blue_mug", "green_bowl", "pr2_mug", "concrete_pipe"])
+def test_every_recording_gets_an_answer_in_the_stated_form(rotrecon, name):
+    code, out, _ = rotrecon("fit", recording(name), "--area", "300,200 380,320", "--axis", "340,210 340,310", "--json")
+    assert code in (0, 3)
+    assert json.loads(out)["method"] == "paper"
+
+
+@pytest.mark.parametrize(
+    ("arguments", "says"),
+    [
+        (["--area", "1,2", "--axis", "1,2 3,4"], "two corners"),
+        (["--area", "1,2 x,4", "--axis", "1,2 3,4"], '"x,4" is not a pixel'),
+        (["--area", "1,2 3,nan", "--axis", "1,2 3,4"], "not a pixel"),
+        (["--area", "10,10 90,90", "--axis", "1,2"], "write its two ends"),
+        (["--area", "10,10 900,90", "--axis", "20,20 80,80"], "outside the frame"),
+        (["--area", "10,10 10,10", "--axis", "20,20 80,80"], "no size"),
+        (["--area", "10,10 90,90 90,10 10,90", "--axis", "20,20 80,80"], "crosses itself"),
+        (["--area", "10,10 90,90", "--axis", "20,20 20,20"], "no length"),
+        (["--area", "10,10 90,90", "--axis", "300,20 300,90"], "outside the area"),
+    ],
+)
+def test_bad_drawings_are_one_sentence_and_exit_code_2(rotrecon, scene, arguments, says):
+    code, out, err = rotrecon("fit", scene, *arguments, "--json")
+    assert (code, out) == (2, "")
+    assert says in err
+    assert err.count("\n") == 1
+
+
+def test_area_without_depth_and_missing_things(rotrecon, scene, tmp_path):
+    assert rotrecon("fit", tmp_path / "none", "--area", "1,1 9,9", "--axis", "2,2 8,8")[0] == 2
+    bad_tools = tmp_path / "tools.toml"
+    bad_tools.write_text("[cutter]\n")
+    code, _, err = rotrecon("fit", scene, *drawing_of(scene), "--tools", bad_tools)
+    assert code == 2
+    assert "[cutter]" in err
+    code, _, err = rotrecon("fit", scene, *drawing_of(scene), "--overlay", tmp_path / "none" / "out.png")
+    assert code == 2
+    assert "cannot be written" in err
+
+
+def test_simulate_writes_a_scene_that_fit_reads_and_never_over_another(rotrecon, tmp_path):
+    code, out, _ = rotrecon("simulate", tmp_path / "ball", "--object", "ball", "--seed", 4)
+    assert code == 0
+    assert "truth.json" in out
+    code, out, _ = rotrecon("fit", tmp_path / "ball", *drawing_of(tmp_path / "ball"), "--json")
+    assert code == 0
+    assert json.loads(out)["kind"] == "sphere"
+    before = sorted((path.name, path.stat().st_mtime_ns) for path in (tmp_path / "ball").iterdir())
+    code, _, err = rotrecon("simulate", tmp_path / "ball")
+    assert code == 2
+    assert "name a new folder" in err
+    assert sorted((path.name, path.stat().st_mtime_ns) for path in (tmp_path / "ball").iterdir()) == before
+
+
+def test_import_of_a_picture_with_depth(rotrecon, tmp_path):
+    cv2.imwrite(str(tmp_path / "rgb.png"), np.full((60, 80, 3), 90, np.uint8))
+    cv2.imwrite(str(tmp_path / "depth.png"), np.full((60, 80), 900, np.uint16))
+    options = ["--depth", tmp_path / "depth.png", "--depth-scale", "0.001"]
+    out = tmp_path / "scene"
+    code, text, _ = rotrecon("import", tmp_path / "rgb.png", out, *options, "--intrinsics", "100,100,39.5,29.5")
+    assert code == 0
+    assert f"wrote {out}" in text
+    for wrong in ("100,100", "a,b,c,d"):
+        code, _, err = rotrecon("import", tmp_path / "rgb.png", tmp_path / "other", *options, "--intrinsics", wrong)
+        assert code == 2
+        assert "--intrinsics" in err
+        assert not (tmp_path / "other").exists()
+
+
+def test_serve_refuses_views_with_their_reason(rotrecon):
+    code, _, err = rotrecon("serve", recording("virtual_stereo"))
+    assert code == 3
+    assert "needs stereo matching" in err
