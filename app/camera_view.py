@@ -111,14 +111,15 @@ class CameraView:
 
     def _center_px(self, page: PageState) -> Pixel:
         camera = self._frame.camera
-        return page.center_px or ((camera.width - 1) / 2, (camera.height - 1) / 2)
+        return page.center_px or (float(camera.K[0, 2]), float(camera.K[1, 2]))
 
     def _half_height(self, page: PageState) -> float:
         """Tangent of half the vertical field of view that shows the whole picture, over the zoom."""
         camera, aspect = self._frame.camera, self._client.camera.aspect
-        by_height = camera.height / 2 / float(camera.K[1, 1])
-        by_width = camera.width / 2 / float(camera.K[0, 0]) / aspect
-        return max(by_height, by_width) * MARGIN / page.zoom
+        (focal_u, focal_v), (u, v) = np.diag(camera.K)[:2], camera.K[:2, 2]
+        by_height = max(v + 0.5, camera.height - 0.5 - v) / focal_v
+        by_width = max(u + 0.5, camera.width - 0.5 - u) / focal_u / aspect
+        return float(max(by_height, by_width)) * MARGIN / page.zoom
 
     def _screen_px(self, size_px: float, page: PageState) -> float:
         """Pixels of the frame that a size on the screen covers."""

@@ -19,7 +19,7 @@ STATE_TEXT = {
     SectionState.EXCLUDED: "excluded by hand",
     SectionState.ODD_RADIUS: "dropped: odd radius",
 }
-CHART_HEIGHT_PX = 170
+CHART_HEIGHT_PX = 128
 
 
 def _dots(label: str, color: str, size_px: float) -> dict[str, Any]:
@@ -28,7 +28,7 @@ def _dots(label: str, color: str, size_px: float) -> dict[str, Any]:
 
 
 RADIUS_SERIES = (
-    {"label": "mm"},
+    {"label": "mm along the axis"},
     {"label": "fitted", "stroke": PROFILE, "width": 2, "points": {"show": False}},
     _dots("used", USED, 4),
     _dots("odd radius", ODD, 4),
@@ -36,8 +36,8 @@ RADIUS_SERIES = (
     _dots("this section", LIT, 10),
 )
 RADIUS_AXES = (
-    {"label": "mm along the axis", "labelSize": 18, "size": 32, "labelFont": "12px sans-serif"},
-    {"label": "radius, mm", "labelSize": 18, "size": 44, "labelFont": "12px sans-serif"},
+    {"size": 26},
+    {"label": "radius, mm", "labelSize": 16, "size": 48, "labelFont": "12px sans-serif"},
 )
 NO_CHART: tuple[Floats, ...] = tuple(np.array([0.0, 1.0]) * scale for scale in (1.0, *[np.nan] * 5))
 
@@ -99,14 +99,12 @@ def section_svg(result: Reconstruction | None, section: int) -> str:
     points = 1000 * sections.in_plane(section) * [1, -1]
     base, center = in_plane_mm(circles.points_m[section]), in_plane_mm(circles.center_m[section])
     radius = 1000 * float(circles.radius_m[section])
-    round_mm = np.array([center - radius, center + radius]) if np.isfinite(radius) else np.zeros((0, 2))
-    held = np.concatenate([points, round_mm])
-    if len(held) == 0:
-        return '<div class="rr-dim">No pixel of this section was segmented.</div>'
-    low, high = held.min(axis=0), held.max(axis=0)
-    size = max(float((high - low).max()), 1.0) * 1.12
-    dot = size / 110
-    x, y = (low + high) / 2 - size / 2
+    if len(points) == 0:
+        return ""
+    low, high = points.min(axis=0), points.max(axis=0)
+    dot = max(float((high - low).max()), 1.0) / 110
+    x, y = low - np.array([6, 16]) * dot
+    width, height = high - low + np.array([12, 22]) * dot
     shapes = [_circle(u, v, dot, f'fill="{USED}" fill-opacity="0.75"') for u, v in points[:: len(points) // 400 + 1]]
     if np.isfinite(radius):
         shapes.append(_circle(*center, radius, f'fill="none" stroke="{PROFILE}" stroke-width="{dot * 0.8:.3f}"'))
@@ -118,7 +116,7 @@ def section_svg(result: Reconstruction | None, section: int) -> str:
                 f'<text x="{u:.3f}" y="{v - 2.8 * dot:.3f}" font-size="{7 * dot:.3f}" text-anchor="middle" '
                 f'fill="currentColor">{name}</text>'
             )
-    return f'<svg class="rr-section" viewBox="{x:.3f} {y:.3f} {size:.3f} {size:.3f}">{"".join(shapes)}</svg>'
+    return f'<svg class="rr-section" viewBox="{x:.3f} {y:.3f} {width:.3f} {height:.3f}">{"".join(shapes)}</svg>'
 
 
 def _circle(u: float, v: float, radius: float, style: str) -> str:

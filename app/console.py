@@ -79,9 +79,9 @@ class Console:
         cloud_points: int = CLOUD_POINTS,
     ) -> None:
         self.session = Session((frame.camera.width, frame.camera.height))
-        self._frame, self._name, self._settings, self._notes = frame, name, settings, notes
+        self.frame, self._name, self._settings, self._notes = frame, name, settings, notes
         self._host, self._port, self._cloud_points = host, port, cloud_points
-        self._pages: dict[int, PageView] = {}
+        self.pages: dict[int, PageView] = {}
         self._measuring: asyncio.Task[None] | None = None
         self._takes_long = False
 
@@ -99,14 +99,12 @@ class Console:
         self._loop = self.server.get_event_loop()
         self._queue: asyncio.Queue[Item] = asyncio.Queue()
         self._settled = asyncio.Event()
-        self._pictures = Pictures(self._frame)
+        self._pictures = Pictures(self.frame)
         self.server.gui.configure_theme(
             dark_mode=True, show_logo=False, show_share_button=False, brand_color=BRAND_COLOR
         )
         self._panels = Panels(self.server, self._name, self._notes, self._post_from)
-        self._scene = SceneView(
-            self.server, self._frame, self._pictures.television(None, "picture"), self._cloud_points
-        )
+        self._scene = SceneView(self.server, self.frame, self._pictures.television(None, "picture"), self._cloud_points)
         self._panels.show(self.session, measuring=False)
         self._running = asyncio.run_coroutine_threadsafe(self._run(), self._loop)
         self.server.on_client_connect(self._page_opened)
@@ -150,8 +148,8 @@ class Console:
             case FromPage(client_id, event):
                 if isinstance(event, get_args(Event)):
                     self.session = step(self.session, event)
-                elif client_id in self._pages:
-                    self._pages[client_id].take(event, self.session)
+                elif client_id in self.pages:
+                    self.pages[client_id].take(event, self.session)
             case Reconstructed():
                 self.session = step(self.session, item)
                 self._measuring = None
@@ -159,7 +157,7 @@ class Console:
             case TakesLong(revision):
                 self._takes_long = self._measuring is not None and revision == self.session.revision
             case PageClosed(client_id):
-                self._pages.pop(client_id, None)
+                self.pages.pop(client_id, None)
             case PageOpened() | CameraMoved():
                 pass
 
@@ -171,17 +169,17 @@ class Console:
 
     async def _measure(self, revision: int, drawing: Drawing) -> None:
         alarm = self._loop.call_later(PROGRESS_AFTER_S, self.post, TakesLong(revision))
-        outcome = await asyncio.to_thread(measure, self._frame, drawing, self._settings)
+        outcome = await asyncio.to_thread(measure, self.frame, drawing, self._settings)
         alarm.cancel()
         self.post(Reconstructed(revision, outcome))
 
     def _show(self, opened: list[ClientHandle]) -> None:
         """Show the session on every page; runs in a thread, and only one at a time."""
         for client in opened:
-            self._pages[client.client_id] = self._new_page(client)
+            self.pages[client.client_id] = self._new_page(client)
         self._panels.show(self.session, self._takes_long)
         self._scene.show(self.session.reconstruction)
-        for client_id, page in list(self._pages.items()):
+        for client_id, page in list(self.pages.items()):
             try:
                 page.show(self.session)
             except Exception:
@@ -208,7 +206,7 @@ class Console:
         self.post(PageClosed(client.client_id))
 
     async def _camera_moved(self, camera: CameraHandle) -> None:
-        page = self._pages.get(camera.client.client_id)
+        page = self.pages.get(camera.client.client_id)
         if page is not None and page.state.view == "camera":
             self.post(CameraMoved())
 

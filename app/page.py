@@ -27,7 +27,8 @@ class PageState:
     """Where the pointer last did something: the crop's middle, and what zooming goes for."""
     center_px: Pixel | None = None
     """What the zoomed view looks at; None for the middle of the picture."""
-    section: int = 0
+    section: int | None = None
+    """The section looked at; None for the one in the middle."""
     dark: bool = True
 
 
@@ -94,11 +95,16 @@ def page_step(page: PageState, event: PageEvent, section_count: int) -> PageStat
         case SectionChosen(section):
             return replace(page, section=_within(section, section_count))
         case SectionStepped(by):
-            return replace(page, section=_within(page.section + by, section_count))
+            return replace(page, section=_within(section_shown(page, section_count) + by, section_count))
         case DarkChosen(dark):
             return replace(page, dark=dark)
         case _:
             return page
+
+
+def section_shown(page: PageState, section_count: int) -> int:
+    """Number of the section that is looked at, of so many."""
+    return _within(section_count // 2 if page.section is None else page.section, section_count)
 
 
 def _zoomed(page: PageState, steps: int | None) -> PageState:

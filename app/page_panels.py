@@ -44,11 +44,13 @@ class PagePanels:
         self._crop_of: object = None
         self._sections_of: object = None
 
-    def show(self, result: Reconstruction | None, page: PageState, excluded: frozenset[int], moving: bool) -> None:
+    def show(
+        self, result: Reconstruction | None, page: PageState, section: int, excluded: frozenset[int], moving: bool
+    ) -> None:
         """Bring this page's panels up to date; pictures wait for the end of a drag."""
         if not moving:
             self._show_television(result, page)
-        self._show_sections(result, page, excluded)
+        self._show_sections(result, section, excluded)
 
     def _show_television(self, result: Reconstruction | None, page: PageState) -> None:
         if self._television_of != (result, page.layer):
@@ -59,11 +61,11 @@ class PagePanels:
             self._crop.image = self._pictures.crop(page.last_point_px)
             self._crop.visible = True
 
-    def _show_sections(self, result: Reconstruction | None, page: PageState, excluded: frozenset[int]) -> None:
-        if self._sections_of == (result, page.section, excluded):
+    def _show_sections(self, result: Reconstruction | None, section: int, excluded: frozenset[int]) -> None:
+        if self._sections_of == (result, section, excluded):
             return
-        self._sections_of = (result, page.section, excluded)
-        count, section = section_count(result), page.section
+        self._sections_of = (result, section, excluded)
+        count = section_count(result)
         chart = radius_chart(result, section)
         self._chart.data = chart
         scales = radius_scales(chart)
@@ -94,7 +96,7 @@ class PagePanels:
         )
         self._slider = self._gui.add_slider("Section", 1, 2, 1, 1, disabled=True, hint="Z and X step")
         self._plane = self._gui.add_html("")
-        self._exclude = self._gui.add_button("Exclude this section", disabled=True)
+        self._exclude = self._gui.add_button("Exclude this section", disabled=True, color="gray")
         self._slider.on_update(self._choosing(lambda number: SectionChosen(int(number) - 1)))
         self._exclude.on_click(self._choosing(lambda _: SectionToggled(self._section)))
 

@@ -9,7 +9,7 @@ from app.camera_view import CameraView
 from app.charts import section_count
 from app.events import Event, HandleMoved, PointerDragged, VertexClicked
 from app.object_drawing import Part, Pixel
-from app.page import PageEvent, PageState, PointTouched, page_step
+from app.page import PageEvent, PageState, PointTouched, page_step, section_shown
 from app.page_panels import PagePanels
 from app.panels import Panels
 from app.pictures import Pictures
@@ -57,17 +57,18 @@ class PageView:
     def show(self, session: Session) -> None:
         """Bring everything on this page up to date."""
         result, page = session.reconstruction, self.state
+        section = section_shown(page, section_count(result))
         moving = session.preview is not None or not session.up_to_date
         self._show_view()
         if page.view == "camera":
             self._camera_view.look(page)
         self._camera_view.show(session.shown, session.vertices_px, page)
         if not moving:
-            self._show_picture(result)
-        if self._lit != (result, page.section, page.view) and page.view == "3D":
-            self._lit = (result, page.section, page.view)
-            self._scene.light_section(self.client, result, page)
-        self._panels.show(result, page, session.shown.excluded_sections, moving)
+            self._show_picture(result, section)
+        if self._lit != (result, section) and page.view == "3D":
+            self._lit = (result, section)
+            self._scene.light_section(self.client, result, section)
+        self._panels.show(result, page, section, session.shown.excluded_sections, moving)
         self._show_notice(session)
 
     def _show_view(self) -> None:
@@ -92,12 +93,12 @@ class PageView:
         else:
             self._scene.look(self.client, self._world_pose)
 
-    def _show_picture(self, result: Reconstruction | None) -> None:
-        page = self.state
-        key = (result, page.depth_opacity, None if result is None else page.section)
+    def _show_picture(self, result: Reconstruction | None, section: int) -> None:
+        opacity = self.state.depth_opacity
+        key = (result, opacity, None if result is None else section)
         if key != self._picture_of:
             self._picture_of = key
-            self._camera_view.picture.image = self._pictures.camera_view(result, page.depth_opacity, page.section)
+            self._camera_view.picture.image = self._pictures.camera_view(result, opacity, section)
 
     def _show_notice(self, session: Session) -> None:
         notice = session.notice

@@ -1,6 +1,6 @@
 """The docked panels that all pages share: what to do next, the result, the drawing's controls, and the keys."""
 
-from collections.abc import Callable
+from collections.abc import Callable, Mapping
 from html import escape
 from typing import Any
 
@@ -25,10 +25,12 @@ from app.static_files import static_text
 from rotrecon.primitives import KINDS
 
 PANEL_WIDTH_PX = 390
+TABS = ("Sections", "Picture", "Why", "Buttons", "Help")
 AUTO = "auto"
 POLYGON = {"Close": PolygonClosed(), "Corner back": VertexTakenBack(), "Cancel": Cancelled()}
 HISTORY = {"Undo": Undone(), "Redo": Redone(), "Clear": Cleared()}
 VIEW = {"Camera": ViewChosen("camera"), "3D": ViewChosen("3D")}
+SECTION = {"Previous": SectionStepped(-1), "Next": SectionStepped(1)}
 ZOOM = {"In": Zoomed(1), "Out": Zoomed(-1), "Whole": Zoomed(None)}
 KEYS: tuple[tuple[str, Any, Any, Event | PageEvent], ...] = (
     ("Camera view", "C", None, ViewChosen("camera")),
@@ -59,10 +61,15 @@ class Panels:
         self._gui.add_html(f"<style>{static_text('console.css')}</style>")
         self._hint = self._gui.add_html("")
         self._result = self._gui.add_html("")
-        self._add_controls()
+        self._kind = self._gui.add_dropdown("Object is a", (AUTO, *KINDS), initial_value=AUTO)
+        self._kind.on_update(self._choosing(lambda value: KindChosen(None if value == AUTO else value)))
+        self._add_buttons("Drawing", HISTORY)
+        self._add_buttons("View", VIEW)
         self._add_keys()
         panel = self._gui.add_panel()
-        self.sections, self.picture, why, keys = (panel.add_tab(t) for t in ("Sections", "Picture", "Why", "Help"))
+        self.sections, self.picture, why, draw, keys = (panel.add_tab(name) for name in TABS)
+        with draw:
+            self._add_controls()
         with why:
             self._why = self._gui.add_html("")
         with keys:
@@ -81,11 +88,12 @@ class Panels:
 
     def _add_controls(self) -> None:
         self._tool = self._gui.add_dropdown("A drag draws", PARTS, initial_value="area", hint="Shift + drag: the axis")
-        self._kind = self._gui.add_dropdown("Object is a", (AUTO, *KINDS), initial_value=AUTO)
         self._tool.on_update(self._choosing(ToolChosen))
-        self._kind.on_update(self._choosing(lambda value: KindChosen(None if value == AUTO else value)))
-        for label, events in (("Drawing", HISTORY), ("Polygon", POLYGON), ("View", VIEW), ("Zoom", ZOOM)):
-            self._gui.add_button_group(label, tuple(events)).on_click(self._choosing(events.get))
+        for label, events in (("Polygon", POLYGON), ("Zoom", ZOOM), ("Section", SECTION)):
+            self._add_buttons(label, events)
+
+    def _add_buttons(self, label: str, events: Mapping[str, Event | PageEvent]) -> None:
+        self._gui.add_button_group(label, tuple(events)).on_click(self._choosing(events.get))
 
     def _add_keys(self) -> None:
         for label, key, modifier, event in KEYS:

@@ -33,7 +33,8 @@ def result_html(session: Session) -> str:
     if content is None or content["kind"] is None:
         return (
             '<div class="rr-result" data-testid="result" data-revision="-1">'
-            '<div class="rr-big rr-dim">&ndash; mm</div><div class="rr-dim">Nothing measured yet.</div></div>'
+            '<div class="rr-big rr-dim">&oslash; &ndash; mm</div>'
+            '<div class="rr-small">Nothing measured yet.</div></div>'
         )
     revision = session.measured.revision if session.measured is not None else -1
     dim = "" if session.up_to_date else " rr-dim"
@@ -42,11 +43,10 @@ def result_html(session: Session) -> str:
     tool_text = f"<b>{escape(tool)}</b>" if tool else "<b>No tool</b> &mdash; see &ldquo;Why&rdquo;"
     return (
         f'<div class="rr-result{dim}" data-testid="result" data-revision="{revision}">'
-        f'<div class="rr-kind" data-field="kind" data-value="{content["kind"]}">{content["kind"].capitalize()}'
-        f"{concave}</div>"
-        f'<div class="rr-big" data-field="diameter_mm" data-value="{content["diameter_mm"]}">'
+        f'<div class="rr-head"><div class="rr-big" data-field="diameter_mm" data-value="{content["diameter_mm"]}">'
         f"&oslash; {content['diameter_mm']:.1f} mm</div>"
-        f'<div class="rr-dim">{_interval(content)}</div>'
+        f'<div class="rr-kind" data-field="kind" data-value="{content["kind"]}">{content["kind"]}{concave}</div></div>'
+        f'<div class="rr-small">{_interval(content)}</div>'
         f'<div class="rr-grid">{_fields(content)}</div>'
         f'<div class="rr-tool" data-field="tool" data-value="{escape(tool or "")}">Tool: {tool_text}</div></div>'
     )
@@ -87,14 +87,14 @@ def _fields(content: dict[str, Any]) -> str:
         ("Length", "length_mm", "{:.0f} mm"),
         ("Half angle", "half_angle_deg", "{:.1f}&deg;"),
         ("RMS", "rms_mm", "{:.2f} mm"),
-        ("Visible arc", "arc_deg", "{:.0f}&deg;"),
+        ("Arc seen", "arc_deg", "{:.0f}&deg;"),
     ]
     cells = [
         FIELD.format(name=name, key=key, exact=content[key], text=form.format(content[key]))
         for name, key, form in fields
         if content[key] is not None
     ]
-    sections = f"{content['sections']['used']} used, {dropped} dropped"
+    sections = f"{content['sections']['used']} of {content['sections']['used'] + dropped}"
     exact = content["sections"]["used"]
     return "".join(cells) + FIELD.format(name="Sections", key="sections_used", exact=exact, text=sections)
 

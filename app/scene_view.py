@@ -4,7 +4,6 @@ import numpy as np
 from viser import ClientHandle, ViserServer
 from viser import transforms as tf
 
-from app.page import PageState
 from rotrecon.arrays import Bytes, Floats
 from rotrecon.axis import SpaceSections
 from rotrecon.camera import transform
@@ -63,17 +62,17 @@ class SceneView:
         self._show_solid(solid)
         self._show_tool(None if result is None else result.tool, solid)
 
-    def light_section(self, client: ClientHandle, result: Reconstruction | None, page: PageState) -> None:
+    def light_section(self, client: ClientHandle, result: Reconstruction | None, section: int) -> None:
         """Light one section on one page."""
         sections = None if result is None else result.sections
-        points_m = np.zeros((1, 3)) if sections is None else self._section_points(sections, page.section)
+        points_m = np.zeros((1, 3)) if sections is None else self._section_points(sections, section)
         client.scene.add_point_cloud(
             "/section",
             points_m,
             SECTION_COLOR,
             point_size=self._point_size_m() * 2,
             precision="float32",
-            visible=page.view == "3D" and sections is not None,
+            visible=sections is not None,
         )
 
     def hide_section(self, client: ClientHandle) -> None:
@@ -105,7 +104,6 @@ class SceneView:
         return transform(self._frame.T_base_camera, self._frame.points_m.reshape(-1, 3)[pixel])
 
     def _section_points(self, sections: SpaceSections, section: int) -> Floats:
-        section = min(section, len(sections.start) - 2)
         points_m = sections.points_m[sections.start[section] : sections.start[section + 1]]
         return transform(self._frame.T_base_camera, points_m) if len(points_m) else np.zeros((1, 3))
 
@@ -133,7 +131,7 @@ class SceneView:
             "/world/camera",
             fov=float(2 * np.arctan(camera.height / 2 / camera.K[1, 1])),
             aspect=camera.width / camera.height,
-            scale=0.12 * self._depth_m,
+            scale=0.08 * self._depth_m,
             thickness=1.5,
             thickness_units="screen",
             color=FRUSTUM_COLOR,

@@ -1,0 +1,48 @@
+"""A console on a small simulated scene, and a real browser that opens its page."""
+
+from collections.abc import Iterator
+
+import numpy as np
+import pytest
+from playwright.sync_api import Browser, ViewportSize, sync_playwright
+
+from app.console import Console
+from rotrecon.camera import PinholeCamera
+from rotrecon.settings import Settings
+from rotrecon.simulate import Simulated, simulate
+from tests.browser.operator import CHROMIUM, CHROMIUM_ARGS, Operator
+
+SMALL_CAMERA = PinholeCamera(320, 240, np.array([[300.0, 0, 165.0], [0, 301.0, 117.0], [0, 0, 1]]))
+"""With a principal point off the middle, as real ones are."""
+
+
+VIEWPORT: ViewportSize = {"width": 1024, "height": 600}
+"""Software WebGL takes its time by the pixel."""
+
+
+@pytest.fixture(scope="session")
+def scene() -> Simulated:
+    return simulate("pipe", 3, SMALL_CAMERA, supersampling=1)
+
+
+@pytest.fixture
+def console(scene: Simulated) -> Iterator[Console]:
+    console = Console(scene.frame, "A pipe", Settings(), port=0, cloud_points=500)
+    console.start()
+    yield console
+    console.stop()
+
+
+@pytest.fixture(scope="session")
+def browser() -> Iterator[Browser]:
+    with sync_playwright() as playwright:
+        browser = playwright.chromium.launch(executable_path=CHROMIUM, args=CHROMIUM_ARGS)
+        yield browser
+        browser.close()
+
+
+@pytest.fixture
+def operator(browser: Browser, console: Console) -> Iterator[Operator]:
+    page = browser.new_page(viewport=VIEWPORT)
+    yield Operator(page, console)
+    page.close()

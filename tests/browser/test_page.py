@@ -1,0 +1,125 @@
+"""What belongs to one page: its view, zoom, layers and section; and what the server does not do for anybody."""
+
+import socket
+
+import numpy as np
+from playwright.sync_api import Browser, expect
+
+from app.console import Console, announcements
+from app.events import Event, PointerDragged, PolygonClosed, VertexClicked
+from rotrecon.settings import Settings
+from rotrecon.simulate import Simulated
+from tests.browser.conftest import VIEWPORT
+from tests.browser.operator import Operator
+
+
+def drawing_events(scene: Simulated) -> tuple[Event, ...]:
+    """The scene's object, drawn."""
+    corners = (VertexClicked(corner, reach_px=0.0) for corner in scene.drawing.area.vertices_px)
+    axis = scene.drawing.axis
+    return (*corners, PolygonClosed(), PointerDragged(axis.start_px, axis.end_px, shift=True))
+
+
+def test_the_keys_change_the_view_and_the_camera_view_comes_back(operator: Operator, scene: Simulated) -> None:
+    sensor = scene.frame.T_base_camera[:3, 3]
+    operator.page.keyboard.press("v")
+    operator.until(lambda: not np.allclose(operator.view.client.camera.position, sensor), "the 3D view is shown")
+    operator.page.keyboard.press("c")
+    operator.until(lambda: operator.view.state.view == "camera", "the camera view is asked for")
+    operator.settle()
+    assert np.allclose(operator.view.client.camera.position, sensor)
+
+
+def test_what_moves_the_camera_does_not_move_the_camera_view(operator: Operator, scene: Simulated) -> None:
+    moved: list[bool] = []
+
+    async def watch(camera: object) -> None:
+        moved.append(True)
+
+    operator.view.client.camera.on_update(watch)
+    operator.page.keyboard.press("w", delay=300)
+    operator.until(lambda: bool(moved), "the key has moved the camera")
+    sensor = scene.frame.T_base_camera[:3, 3]
+    operator.until(
+        lambda: np.allclose(operator.view.client.camera.position, sensor, atol=1e-4), "the camera is put back"
+    )
+
+
+def test_zooming_looks_at_the_last_point(operator: Operator) -> None:
+    operator.click(80, 60)
+    operator.until(lambda: operator.view.state.last_point_px is not None, "the point is known")
+    fov_rad = operator.view.client.camera.fov
+    operator.page.keyboard.press("r")
+    operator.until(lambda: operator.view.client.camera.fov < 0.8 * fov_rad, "the picture is larger")
+    operator.settle()
+    box = operator.page.locator("canvas").first.bounding_box()
+    assert box is not None
+    assert np.allclose(operator.frame_to_screen(80, 60), (box["width"] / 2, box["height"] / 2), atol=3)
+    operator.page.keyboard.press("f")
+    operator.until(lambda: abs(operator.view.client.camera.fov - fov_rad) < 1e-6, "the whole picture is back")
+
+
+def test_sections_are_stepped_and_excluded(operator: Operator, scene: Simulated) -> None:
+    operator.send(*drawing_events(scene))
+    shown = operator.page.get_by_test_id("section")
+    expect(shown).to_contain_text(" of ")
+    number = int((shown.text_content() or "").split()[1])
+    operator.page.keyboard.press("x")
+    expect(shown).to_contain_text(f"Section {number + 1} of")
+    operator.page.keyboard.press("z")
+    expect(shown).to_contain_text(f"Section {number} of")
+    expect(operator.page.locator("svg.rr-section")).to_be_visible()
+    operator.page.get_by_role("button", name="Exclude this section").click()
+    expect(shown).to_contain_text("excluded by hand")
+    assert operator.console.session.shown.excluded_sections == {number - 1}
+    operator.page.get_by_role("button", name="Put this section back").click()
+    operator.until(lambda: not operator.console.session.shown.excluded_sections, "the section counts again")
+
+
+def test_two_pages_share_the_drawing_and_not_the_view(operator: Operator, browser: Browser, scene: Simulated) -> None:
+    page = browser.new_page(viewport=VIEWPORT)
+    other = Operator(page, operator.console)
+    operator.send(*drawing_events(scene))
+    expect(other.page.locator('[data-field="diameter_mm"]')).to_have_attribute(
+        "data-value", operator.value("diameter_mm") or ""
+    )
+    other.page.keyboard.press("v")
+    other.until(lambda: other.view.state.view == "3D", "the other page shows the 3D view")
+    assert operator.view.state.view == "camera"
+    page.close()
+    operator.until(lambda: other.client_id not in operator.console.pages, "the closed page is forgotten")
+
+
+def test_layers_and_depth_are_chosen_on_the_page(operator: Operator) -> None:
+    operator.page.get_by_role("tab", name="Picture").click()
+    operator.page.get_by_label("Frame shows").click()
+    operator.page.get_by_role("option", name="depth map").click()
+    operator.until(lambda: operator.view.state.layer == "depth map", "the layer is chosen")
+    slider = operator.page.get_by_role("slider").last
+    slider.focus()
+    slider.press("End")
+    operator.until(lambda: operator.view.state.depth_opacity == 1.0, "the depth covers the picture")
+    operator.settle()
+
+
+def test_sharing_is_refused_and_not_offered(operator: Operator) -> None:
+    assert operator.console.server.request_share_url() is None
+    expect(operator.page.get_by_label("Share")).to_have_count(0)
+    assert operator.console.server._share_tunnel is None
+
+
+def test_the_server_listens_on_loopback_only_and_says_so_when_not(scene: Simulated) -> None:
+    with socket.socket() as taken:
+        taken.bind(("127.0.0.1", 0))
+        taken.listen()
+        port = taken.getsockname()[1]
+        console = Console(scene.frame, "A pipe", Settings(), port=port, cloud_points=10)
+        console.start()
+        real = console.server.get_port()
+        assert console.server.get_host() == "127.0.0.1"
+        assert real != port
+        assert console.address == f"http://127.0.0.1:{real}"
+        assert any(f"Port {port} is taken" in line for line in announcements("127.0.0.1", port, real, console.address))
+        console.stop()
+    assert not any("WARNING" in line for line in announcements("127.0.0.1", 8080, 8080, "address"))
+    assert any("WARNING" in line for line in announcements("0.0.0.0", 8080, 8080, "address"))

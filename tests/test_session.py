@@ -1,0 +1,197 @@
+"""Laws of the session: nothing raises, what is undone comes back, and nothing stale or off the frame gets in."""
+
+from dataclasses import replace
+
+import pytest
+from hypothesis import given, settings
+from hypothesis import strategies as st
+
+from app.events import (
+    Cancelled,
+    Cleared,
+    Event,
+    HandleMoved,
+    KindChosen,
+    PointerDragged,
+    PolygonClosed,
+    Reconstructed,
+    Redone,
+    Refused,
+    SectionToggled,
+    ToolChosen,
+    Undone,
+    VertexClicked,
+    VertexTakenBack,
+)
+from app.hints import hint
+from app.object_drawing import ObjectDrawing, Pixel
+from app.session import HISTORY_LENGTH, Session, step
+from rotrecon.drawing import AreaOfInterest, ObjectAxis
+from rotrecon.reconstruct import Reconstruction, reconstruct
+from rotrecon.settings import Settings
+from rotrecon.simulate import simulate
+
+SIZE_PX = (640, 480)
+EMPTY = Session(SIZE_PX)
+
+coordinates = st.floats(-1000, 2000) | st.sampled_from([float("nan"), float("inf"), -float("inf")])
+pixels = st.tuples(coordinates, coordinates)
+indices = st.integers(-2, 8)
+events: st.SearchStrategy[Event] = st.one_of(
+    st.builds(PointerDragged, pixels, pixels, st.booleans(), st.booleans()),
+    st.builds(VertexClicked, pixels, st.floats(0, 50)),
+    st.builds(HandleMoved, st.sampled_from(["area", "axis"]), indices, pixels, st.booleans()),
+    st.builds(ToolChosen, st.sampled_from(["area", "axis", "nonsense"])),
+    st.builds(KindChosen, st.sampled_from([None, "cylinder", "sphere", "nonsense"])),
+    st.builds(SectionToggled, indices),
+    st.builds(Reconstructed, st.integers(0, 30), st.just(Refused("the axis has no length"))),
+    st.sampled_from([PolygonClosed(), VertexTakenBack(), Cancelled(), Cleared(), Undone(), Redone()]),
+)
+sequences = st.lists(events, max_size=30)
+
+
+def after(*happened: Event, session: Session = EMPTY) -> Session:
+    for event in happened:
+        session = step(session, event)
+    return session
+
+
+AREA = PointerDragged((100.0, 100.0), (200.0, 300.0))
+AXIS = PointerDragged((150.0, 120.0), (150.0, 280.0), shift=True)
+
+
+@pytest.fixture(scope="module")
+def measured() -> tuple[Session, Reconstruction]:
+    scene = simulate("pipe", 0, noise=None)
+    drawn = ObjectDrawing(scene.drawing.area, scene.drawing.axis)
+    session = replace(EMPTY, objects=(drawn,))
+    result = reconstruct(scene.frame, scene.drawing, Settings())
+    return after(Reconstructed(session.revision, result), session=session), result
+
+
+@given(sequences)
+def test_no_sequence_of_events_raises_or_leaves_the_frame(happened: list[Event]) -> None:
+    session = after(*happened)
+    assert hint(session)
+    assert len(session.past) <= HISTORY_LENGTH
+    for drawn in (*session.objects, session.shown):
+        ends = () if drawn.axis is None else (drawn.axis.start_px, drawn.axis.end_px)
+        for u, v in (*(drawn.area.vertices_px if drawn.area else ()), *ends, *session.vertices_px):
+            assert 0 <= u <= SIZE_PX[0] - 1
+            assert 0 <= v <= SIZE_PX[1] - 1
+        assert drawn.kind in (None, "cylinder", "sphere")
+
+
+@given(sequences, events)
+def test_undo_restores_and_redo_repeats_whatever_changed_the_drawing(happened: list[Event], event: Event) -> None:
+    before = after(*happened)
+    changed = step(before, event)
+    if changed.objects == before.objects or isinstance(event, Undone | Redone):
+        return
+    undone = step(replace(changed, vertices_px=()), Undone())
+    assert undone.objects == before.objects
+    assert step(undone, Redone()).objects == changed.objects
+
+
+@given(sequences, events)
+def test_the_revision_grows_exactly_when_what_is_shown_changes(happened: list[Event], event: Event) -> None:
+    before = after(*happened)
+    changed = step(before, event)
+    assert changed.revision == before.revision + (changed.shown != before.shown)
+
+
+@given(sequences, st.integers(-5, 60))
+def test_a_measurement_counts_only_for_the_drawing_it_was_made_of(happened: list[Event], revision: int) -> None:
+    session = after(*happened)
+    told = step(session, Reconstructed(revision, Refused("news")))
+    if revision != session.revision or session.shown.complete is None:
+        assert told is session
+    else:
+        assert told.up_to_date
+        assert told.measured is not None
+        assert told.measured.outcome == Refused("news")
+
+
+@given(sequences)
+def test_an_open_drag_changes_nothing_that_escape_does_not_restore(happened: list[Event]) -> None:
+    session = after(*happened, Cancelled())
+    dragging = after(PointerDragged((10.0, 10.0), (90.0, 80.0), finished=False), session=session)
+    assert dragging.objects == session.objects
+    assert step(dragging, Cancelled()).shown == session.shown
+
+
+@settings(max_examples=30)
+@given(st.lists(st.tuples(st.integers(0, 600), st.integers(0, 400)), min_size=3, max_size=9, unique=True))
+def test_clicked_corners_become_the_area_when_the_polygon_is_closed(corners: list[Pixel]) -> None:
+    session = after(*(VertexClicked(corner, reach_px=0) for corner in corners))
+    assert session.shown.area is None
+    assert session.vertices_px == tuple(corners)
+    by_click = step(session, VertexClicked(corners[0], reach_px=0.5))
+    by_key = step(session, PolygonClosed())
+    assert by_click.shown.area == by_key.shown.area == AreaOfInterest(tuple(corners))
+    assert by_click.vertices_px == ()
+
+
+def test_two_corners_do_not_close_and_backspace_takes_the_last_one_back() -> None:
+    session = after(VertexClicked((10, 10)), VertexClicked((50, 10)))
+    assert step(session, PolygonClosed()) == session
+    assert step(session, VertexTakenBack()).vertices_px == ((10, 10),)
+    assert step(session, Undone()).vertices_px == ((10, 10),)
+    assert step(session, Cancelled()).vertices_px == ()
+
+
+def test_a_rectangle_and_a_stroke_make_a_drawing_that_can_be_measured() -> None:
+    session = step(EMPTY, AREA)
+    assert session.shown.complete is None
+    assert "axis" in hint(session)
+    drawing = step(session, AXIS).shown.complete
+    assert drawing is not None
+    assert drawing.area == AreaOfInterest.rectangle((100.0, 100.0), (200.0, 300.0))
+    assert drawing.axis == ObjectAxis((150.0, 120.0), (150.0, 280.0))
+
+
+def test_with_the_axis_tool_a_plain_drag_draws_the_axis() -> None:
+    assert step(step(EMPTY, ToolChosen("axis")), replace(AXIS, shift=False)).shown.axis is not None
+
+
+def test_a_corner_of_a_rectangle_takes_its_neighbours_along() -> None:
+    moved = after(AREA, HandleMoved("area", 2, (250.0, 350.0))).shown.area
+    assert moved == AreaOfInterest.rectangle((100.0, 100.0), (250.0, 350.0))
+
+
+def test_an_area_drawn_elsewhere_drops_the_axis_of_the_object_before() -> None:
+    assert after(AREA, AXIS, PointerDragged((400.0, 100.0), (500.0, 300.0))).shown.axis is None
+    assert after(AREA, AXIS, PointerDragged((90.0, 90.0), (220.0, 310.0))).shown.axis is not None
+
+
+def test_a_refusal_is_told_once_a_revision_and_not_during_a_drag() -> None:
+    dragging = after(AREA, replace(AXIS, finished=False))
+    dragging = step(dragging, Reconstructed(dragging.revision, Refused("the axis has no length")))
+    assert dragging.notice is None
+    released = step(dragging, AXIS)
+    assert released.notice is not None
+    assert released.notice.text == "The axis has no length."
+    again = step(released, Reconstructed(released.revision, Refused("the axis has no length")))
+    assert again.notice == released.notice
+
+
+def test_a_section_is_taken_out_and_put_back_and_forgotten_with_the_drawing(
+    measured: tuple[Session, Reconstruction],
+) -> None:
+    session, result = measured
+    assert session.reconstruction is result
+    out = step(session, SectionToggled(5))
+    assert out.shown.excluded_sections == {5}
+    assert not out.up_to_date
+    back = after(Reconstructed(out.revision, result), SectionToggled(5), session=out)
+    assert back.shown.excluded_sections == frozenset()
+    assert step(session, SectionToggled(100_000)) == session
+    assert step(out, HandleMoved("axis", 0, (300.0, 200.0))).shown.excluded_sections == frozenset()
+
+
+def test_clearing_takes_the_result_away() -> None:
+    session = after(AREA, AXIS)
+    session = step(session, Reconstructed(session.revision, Refused("no")))
+    cleared = step(session, Cleared())
+    assert cleared.measured is None
+    assert cleared.up_to_date
