@@ -7,7 +7,7 @@ from typing import Annotated, Literal
 
 import typer
 
-from app.describe import describe
+from app.describe import describe, describe_result
 from app.drawing_text import parse_area, parse_axis
 from rotrecon.answer import answer, cannot
 from rotrecon.drawing import Drawing, DrawingError
@@ -64,18 +64,19 @@ def fit(
     settings = Settings(method=method, tools=default_tools() if tools is None else read_tools(tools))
     frame = read_scene(scene).frame()
     if isinstance(frame, FrameUnavailable):
-        _print_answer(cannot(frame.reason, method), json_)
+        content = cannot(frame.reason, method)
+        typer.echo(_json(content) if json_ else describe(content))
         raise typer.Exit(CANNOT)
     result = reconstruct(frame, drawing, settings)
     if overlay is not None:
         _write_overlay(overlay, result)
-    _print_answer(answer(result), json_)
+    typer.echo(_json(answer(result)) if json_ else describe_result(result))
     if isinstance(result.fit, FitFailure):
         raise typer.Exit(CANNOT)
 
 
-def _print_answer(content: dict[str, object], as_json: bool) -> None:
-    typer.echo(json.dumps(content, allow_nan=False) if as_json else describe(content))
+def _json(content: dict[str, object]) -> str:
+    return json.dumps(content, allow_nan=False)
 
 
 def _write_overlay(path: Path, result: Reconstruction) -> None:

@@ -2,6 +2,20 @@
 
 from typing import Any
 
+from rotrecon.answer import answer as answer_of
+from rotrecon.fitting import Fit
+from rotrecon.reconstruct import Reconstruction
+
+
+def describe_result(result: Reconstruction) -> str:
+    """What `describe` says, and beside it what the paper's other ways to the same diameter give."""
+    text = describe(answer_of(result))
+    if result.first_cut_radius_m is not None:
+        text += f"\n  for comparison: the first cut alone gives {2000 * result.first_cut_radius_m:.1f} mm"
+    if isinstance(result.fit, Fit) and result.fit.axis_length_radius_m is not None:
+        text += f", half the axis length (16) {2000 * result.fit.axis_length_radius_m:.1f} mm"
+    return text
+
 
 def describe(answer: dict[str, Any]) -> str:
     """A few lines that say what was measured and which tool fits, or why not."""

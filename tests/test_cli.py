@@ -55,6 +55,7 @@ def test_fit_in_words(rotrecon, scene):
     assert code == 0
     assert "mm in diameter" in out
     assert "tool: mechanical cutter" in out
+    assert "the first cut alone gives" in out
 
 
 def test_kind_and_tools_can_be_given(rotrecon, scene, tmp_path):
@@ -136,6 +137,7 @@ def test_simulate_writes_a_scene_that_fit_reads_and_never_over_another(rotrecon,
     code, out, _ = rotrecon("fit", tmp_path / "ball", *drawing_of(tmp_path / "ball"), "--json")
     assert code == 0
     assert json.loads(out)["kind"] == "sphere"
+    assert "half the axis length (16)" in rotrecon("fit", tmp_path / "ball", *drawing_of(tmp_path / "ball"))[1]
     before = sorted((path.name, path.stat().st_mtime_ns) for path in (tmp_path / "ball").iterdir())
     code, _, err = rotrecon("simulate", tmp_path / "ball")
     assert code == 2
