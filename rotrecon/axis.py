@@ -89,11 +89,19 @@ class SpaceSections:
     """(S + 1,) section s holds the points from start[s] to start[s + 1]."""
     pixel: Indices
     """(M,) index into the flattened frame, ordered by section and by x within it."""
-    points_m: Cloud
-    """(M, 3) camera coordinates."""
+    cloud_m: Cloud
+    """(H, W, 3) the frame's points, which are not held twice."""
 
     def __post_init__(self) -> None:
         freeze(self)
+
+    @property
+    def points_m(self) -> Cloud:
+        """(M, 3) camera coordinates; copied from the cloud."""
+        return self._points(self.pixel)
+
+    def _points(self, pixel: Indices) -> Cloud:
+        return self.cloud_m.reshape(-1, 3)[pixel]
 
     def base_points(self) -> tuple[Floats, Indices]:
         """First, middle and last point (S, 3, 3) of each section, brought into one plane, and the counts (S,)."""
@@ -101,31 +109,37 @@ class SpaceSections:
         rank = np.stack([np.zeros_like(count), (count - 1) // 2, count - 1], axis=1)
         points = np.full((len(count), 3, 3), np.nan)
         filled = count > 0
-        points[filled] = self.points_m[(self.start[:-1, None] + rank)[filled]]
+        points[filled] = self._points(self.pixel[(self.start[:-1, None] + rank)[filled]])
         along = self.axis.along(points)
         shift = along.mean(axis=1, keepdims=True) - along
         return points + shift[..., None] * self.axis.direction, count
 
     def points_of(self, sections: Bools) -> Cloud:
         """Points (n, 3) of the chosen (S,) sections, camera coordinates."""
-        return self.points_m[np.repeat(sections, np.diff(self.start))]
+        return self._points(self.pixel[np.repeat(sections, np.diff(self.start))])
 
     def in_plane(self, section: int) -> Floats:
         """Points (n, 2) of one section in its own plane, metres from the axis: across, and toward the camera."""
-        points = self.points_m[self.start[section] : self.start[section + 1]] - self.axis.point_m
+        points = self._points(self.pixel[self.start[section] : self.start[section + 1]]) - self.axis.point_m
         return np.stack([points @ self.across, points @ self.toward_camera], axis=1)
 
 
-def cut_in_space(points_m: Cloud, pixel: Indices, axis: Axis, ends_m: tuple[float, float], count: int) -> SpaceSections:
-    """Sort points (M, 3) and their pixels (M,) into `count` sections between two distances along the axis."""
+def cut_in_space(cloud_m: Cloud, pixel: Indices, axis: Axis, ends_m: tuple[float, float], count: int) -> SpaceSections:
+    """Sort pixels (M,) of a cloud (H, W, 3) into `count` sections between two distances along the axis."""
     across, toward_camera = basis_across(axis.direction, -axis.point_m)
-    offset = points_m - axis.point_m.astype(np.float32)
+    place = _section_and_place(cloud_m.reshape(-1, 3)[pixel], axis, across, ends_m, count)
+    order = np.argsort(place)
+    start = np.searchsorted(place, np.arange(count + 1), sorter=order)
+    pixel = pixel[order[start[0] : start[-1]]]
+    return SpaceSections(axis, across, toward_camera, (start - start[0]).astype(np.int32), pixel, cloud_m)
+
+
+def _section_and_place(points_m: Cloud, axis: Axis, across: Floats, ends_m: tuple[float, float], count: int) -> Floats:
+    """Number of the section of each point (M, 3), plus its place across it from 0 to below 1; changes the points."""
     low, high = ends_m
-    section = (offset @ axis.direction.astype(np.float32) - low) * (count / (high - low))
-    within = (section >= 0) & (section < count)
-    points_m, pixel, section = points_m[within], pixel[within], section[within].astype(np.int32)
-    x = (offset @ across.astype(np.float32))[within]
-    width = float(np.ptp(x)) if len(x) else 0.0
-    order = np.argsort(section + (x - x.min()) / (1.001 * width + 1e-9)) if len(x) else np.zeros(0, dtype=np.int64)
-    start = np.concatenate([[0], np.bincount(section, minlength=count).cumsum()])
-    return SpaceSections(axis, across, toward_camera, start.astype(np.int32), pixel[order], points_m[order])
+    points_m -= axis.point_m.astype(np.float32)
+    section = (points_m @ axis.direction.astype(np.float32) - low) * (count / (high - low))
+    x = points_m @ across.astype(np.float32)
+    x -= x.min(initial=0.0)
+    x /= 1.001 * x.max(initial=0.0) + 1e-9
+    return np.add(np.floor(section, out=section), x, dtype=np.float64)

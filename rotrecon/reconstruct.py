@@ -59,22 +59,21 @@ def reconstruct(frame: Frame, drawing: Drawing, settings: Settings) -> Reconstru
     Raises DrawingError for a drawing that cannot be used on this frame; what the data cannot hold is a FitFailure.
     """
     segments = cut_sections(drawing.area, drawing.axis, (frame.camera.width, frame.camera.height))
-    depth_m, usable = _usable_depth(frame, segments)
-    segmentation = segment(depth_m, usable, segments.inside, settings)
+    segmentation = segment(*_usable_depth(frame, segments), segments.inside, settings)
     first = _cut(*base_points(frame.points_m, segments.pixel, segmentation.kept), settings)
     result = Reconstruction(
-        frame, drawing, settings, segments, segmentation, first, fit=_why_not(first.circles, usable, settings)
+        frame, drawing, settings, segments, segmentation, first, fit=_why_not(first.circles, segmentation, settings)
     )
     if first.axis is None:
         return result
     sections, second = _cut_in_space(result, first, first.axis)
-    result = replace(result, sections=sections, second_cut=second, fit=_why_not(second.circles, usable, settings))
+    result = replace(result, sections=sections, second_cut=second, fit=_why_not(second.circles, segmentation, settings))
     return result if second.axis is None else _with_solid(result, first, second, second.axis.axis, sections)
 
 
 def _usable_depth(frame: Frame, segments: CrossSegments) -> tuple[Cloud, Bools]:
     """Depth (S, W) of every cell, and where it is known and within the arm's limits."""
-    depth_m = frame.depth_m.ravel()[segments.pixel]
+    depth_m = frame.points_m.reshape(-1, 3)[segments.pixel, 2]
     usable = segments.inside & np.isfinite(depth_m)
     if not usable.any():
         raise DrawingError("the area holds no depth; draw it where the depth map has values")
@@ -101,15 +100,15 @@ def _cut_in_space(result: Reconstruction, first: Cut, axis: AxisFit) -> tuple[Sp
     """
     settings = result.settings
     pixel = result.segments.pixel[result.segmentation.kept]
-    points_m = result.frame.points_m.reshape(-1, 3)[pixel]
+    cloud_m = result.frame.points_m
     count = len(first.circles.state)
-    sections = cut_in_space(points_m, pixel, axis.axis, _span(axis, first.circles), count)
+    sections = cut_in_space(cloud_m, pixel, axis.axis, _span(axis, first.circles), count)
     for _ in range(settings.cuts_in_space - 1):
         cut = _cut(*sections.base_points(), settings)
         if cut.axis is None or cut.axis.axis.direction @ axis.axis.direction > np.cos(settings.axis_settled_rad):
             break
         axis = cut.axis
-        sections = cut_in_space(points_m, pixel, axis.axis, _span(axis, cut.circles), count)
+        sections = cut_in_space(cloud_m, pixel, axis.axis, _span(axis, cut.circles), count)
     return sections, _cut(*sections.base_points(), settings, result.drawing.excluded_sections)
 
 
@@ -158,10 +157,10 @@ def _radius_from(cut: Cut, shape: Shape, settings: Settings) -> float | None:
     return None if radii is None else radii.radius_at_middle(along)
 
 
-def _why_not(circles: SectionCircles, usable: Bools, settings: Settings) -> FitFailure:
+def _why_not(circles: SectionCircles, segmentation: Segmentation, settings: Settings) -> FitFailure:
     """Why circles hold no axis, in words the operator can act on."""
     found = int(circles.used.sum())
-    if not usable.any():
+    if not segmentation.history.any():
         return FitFailure(
             FailureReason.OUT_OF_REACH,
             "everything in the area is outside the arm's limits; move the arm or the limits",

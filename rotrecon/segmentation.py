@@ -60,8 +60,10 @@ def segment(depth_m: Cloud, usable: Bools, inside: Bools, settings: Settings) ->
     reach = np.maximum(settings.sigma_factor * sigma, settings.distance_floor_m).astype(np.float32)[:, None]
     outlier = close & (np.abs(depth_m - mean.astype(np.float32)[:, None]) > reach)
     accepted = close & ~outlier
+    step_m = np.diff(depth_m, axis=1)
     linked = np.zeros_like(usable)
-    linked[:, 1:] = usable[:, 1:] & usable[:, :-1] & (np.abs(np.diff(depth_m, axis=1)) <= reach)
+    linked[:, 1:] = usable[:, 1:] & usable[:, :-1] & (np.abs(step_m, out=step_m) <= reach)
+    del step_m
     forward = _scan(accepted, linked)
     backward = _scan_back(forward, linked)
     density, coverage = _line_shares(backward, usable, inside)
@@ -110,8 +112,10 @@ def _scan(accepted: Bools, linked: Bools) -> Bools:
     at the last broken link; w joins when the last accepted pixel up to w lies in that chain.
     """
     column = np.arange(accepted.shape[1], dtype=np.int16)
-    chain_start = np.maximum.accumulate(np.where(linked, np.int16(0), column), axis=1)
-    last_accepted = np.maximum.accumulate(np.where(accepted, column, np.int16(-1)), axis=1)
+    chain_start = np.where(linked, np.int16(0), column)
+    np.maximum.accumulate(chain_start, axis=1, out=chain_start)
+    last_accepted = np.where(accepted, column, np.int16(-1))
+    np.maximum.accumulate(last_accepted, axis=1, out=last_accepted)
     return last_accepted >= chain_start
 
 
