@@ -1,5 +1,6 @@
 """The result as HTML: its numbers are those of `rotrecon.answer`, and every text from outside is escaped."""
 
+from functools import lru_cache
 from html import escape
 from typing import Any
 
@@ -29,7 +30,7 @@ def hint_html(session: Session, measuring: bool) -> str:
 def result_html(session: Session) -> str:
     """The result in numbers: class, diameter, size, quality and the tool; dimmed while a new one is on its way."""
     result = session.reconstruction
-    content = None if result is None else answer(result)
+    content = None if result is None else _answer(result)
     if content is None or content["kind"] is None:
         return (
             '<div class="rr-result" data-testid="result" data-revision="-1">'
@@ -57,7 +58,7 @@ def why_html(session: Session) -> str:
     result = session.reconstruction
     if result is None:
         return '<div class="rr-dim">Draw an area and an axis first.</div>'
-    content = answer(result)
+    content = _answer(result)
     blocks = [("Why not", _list(content["reasons"]))] if content["kind"] is None else []
     if content["kind"] is not None:
         first_mm = 0.0 if result.first_cut_radius_m is None else 2000 * result.first_cut_radius_m
@@ -71,6 +72,12 @@ def why_html(session: Session) -> str:
     if content["kind"] is not None:
         blocks.append(("Tools", _tools(result, content["reasons"])))
     return '<div class="rr-why" data-testid="why">' + "".join(f"<h4>{n}</h4>{body}" for n, body in blocks) + "</div>"
+
+
+@lru_cache(maxsize=2)
+def _answer(result: Reconstruction) -> dict[str, Any]:
+    """The answer, worked out once for all texts that are made of it."""
+    return answer(result)
 
 
 def _interval(content: dict[str, Any]) -> str:

@@ -10,6 +10,7 @@ from app.console import Console
 from rotrecon.camera import PinholeCamera
 from rotrecon.settings import Settings
 from rotrecon.simulate import Simulated, simulate
+from rotrecon.stereo_noise import StereoErrors
 from tests.browser.operator import CHROMIUM, CHROMIUM_ARGS, Operator
 
 SMALL_CAMERA = PinholeCamera(320, 240, np.array([[300.0, 0, 165.0], [0, 301.0, 117.0], [0, 0, 1]]))
@@ -20,9 +21,13 @@ VIEWPORT: ViewportSize = {"width": 1024, "height": 600}
 """Software WebGL takes its time by the pixel."""
 
 
+LITTLE_NOISE = StereoErrors(disparity_sigma_px=0.03, window_px=1, half_occlusion=False)
+"""Enough for no two drawings to give the same diameter."""
+
+
 @pytest.fixture(scope="session")
 def scene() -> Simulated:
-    return simulate("pipe", 3, SMALL_CAMERA, supersampling=1)
+    return simulate("pipe", 3, SMALL_CAMERA, LITTLE_NOISE, supersampling=1)
 
 
 @pytest.fixture
