@@ -1,10 +1,11 @@
 """The array types that stages pass to each other, and how they are made read-only."""
 
-from typing import Any, cast
+from typing import Any, TypeVar, cast
 
 import numpy as np
 from numpy.typing import NDArray
 
+Scalar = TypeVar("Scalar", bound=np.generic)
 Floats = NDArray[np.float64]
 """Positions, directions, poses and results."""
 Cloud = NDArray[np.float32]
@@ -12,6 +13,14 @@ Cloud = NDArray[np.float32]
 Bools = NDArray[np.bool_]
 Indices = NDArray[np.int32]
 Bytes = NDArray[np.uint8]
+
+BLOCK = 32768
+"""Rows worked on at once where temporaries would be many times the result; they stay in the processor's cache."""
+
+
+def blocks(rows: NDArray[Scalar]) -> list[NDArray[Scalar]]:
+    """An array cut into pieces of at most `BLOCK` rows."""
+    return np.array_split(rows, 1 + len(rows) // BLOCK)
 
 
 def freeze(record: Any) -> None:

@@ -5,15 +5,12 @@ from enum import StrEnum
 
 import numpy as np
 
-from rotrecon.arrays import Bytes, Cloud, Floats, freeze
+from rotrecon.arrays import Bytes, Cloud, Floats, blocks, freeze
 from rotrecon.axis import Axis, SpaceSections
 from rotrecon.circles import SectionCircles, SectionState
 from rotrecon.primitives import Frustum, Kind, Primitive, Sphere
 from rotrecon.radii import RadiusFit, axis_length_radius
 from rotrecon.settings import Settings
-
-RMS_BLOCK = 32768
-"""Points whose distances are computed at once: their temporaries stay in the processor's cache."""
 
 
 class FailureReason(StrEnum):
@@ -111,6 +108,6 @@ def _solid(radii: RadiusFit, kind: Kind | None, axis: Axis, along: Floats, setti
 
 
 def _rms(solid: Primitive, points_m: Cloud) -> float:
-    """Root mean square of the orthogonal distances of points (M, 3), a block at a time to spare memory."""
-    blocks = np.array_split(points_m, 1 + len(points_m) // RMS_BLOCK)
-    return float(np.sqrt(sum(float((solid.distance(block) ** 2).sum()) for block in blocks) / len(points_m)))
+    """Root mean square of the orthogonal distances of points (M, 3)."""
+    squared = sum(float((solid.distance(block) ** 2).sum()) for block in blocks(points_m))
+    return float(np.sqrt(squared / len(points_m)))

@@ -4,7 +4,7 @@ from dataclasses import dataclass, replace
 
 import numpy as np
 
-from rotrecon.arrays import Bools, Cloud, Floats, Indices
+from rotrecon.arrays import Bools, Cloud, Floats, Indices, blocks
 from rotrecon.axis import Axis, AxisFit, SpaceSections, cut_in_space, fit_axis
 from rotrecon.circles import SectionCircles, SectionState, base_points, circumcircles
 from rotrecon.drawing import CrossSegments, Drawing, DrawingError, cut_sections
@@ -77,9 +77,10 @@ def _usable_depth(frame: Frame, segments: CrossSegments) -> tuple[Cloud, Bools]:
     usable = segments.inside & np.isfinite(depth_m)
     if not usable.any():
         raise DrawingError("the area holds no depth; draw it where the depth map has values")
-    pixel = segments.pixel[usable]
-    points_m = frame.points_m.reshape(-1, 3)
-    usable[usable] = available(points_m[pixel], frame.T_base_camera, frame.workspace)
+    cloud_m = frame.points_m.reshape(-1, 3)
+    usable[usable] = np.concatenate(
+        [available(cloud_m[pixel], frame.T_base_camera, frame.workspace) for pixel in blocks(segments.pixel[usable])]
+    )
     return depth_m, usable
 
 
