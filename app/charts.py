@@ -19,7 +19,7 @@ STATE_TEXT = {
     SectionState.EXCLUDED: "excluded by hand",
     SectionState.ODD_RADIUS: "dropped: odd radius",
 }
-CHART_HEIGHT_PX = 128
+CHART_HEIGHT_PX = 132
 
 
 def _dots(label: str, color: str, size_px: float) -> dict[str, Any]:
@@ -27,7 +27,7 @@ def _dots(label: str, color: str, size_px: float) -> dict[str, Any]:
     return {"label": label, "stroke": color, "width": 0, "points": points}
 
 
-RADIUS_SERIES = (
+RADIUS_SERIES: tuple[Any, ...] = (
     {"label": "mm along the axis"},
     {"label": "fitted", "stroke": PROFILE, "width": 2, "points": {"show": False}},
     _dots("used", USED, 4),
@@ -35,8 +35,8 @@ RADIUS_SERIES = (
     _dots("excluded", EXCLUDED, 5),
     _dots("this section", LIT, 10),
 )
-RADIUS_AXES = (
-    {"size": 26},
+RADIUS_AXES: tuple[Any, ...] = (
+    {"size": 34},
     {"label": "radius, mm", "labelSize": 16, "size": 48, "labelFont": "12px sans-serif"},
 )
 NO_CHART: tuple[Floats, ...] = tuple(np.array([0.0, 1.0]) * scale for scale in (1.0, *[np.nan] * 5))
@@ -103,8 +103,8 @@ def section_svg(result: Reconstruction | None, section: int) -> str:
         return ""
     low, high = points.min(axis=0), points.max(axis=0)
     dot = max(float((high - low).max()), 1.0) / 110
-    x, y = low - np.array([6, 16]) * dot
-    width, height = high - low + np.array([12, 22]) * dot
+    x, y = low - np.array([6, 12]) * dot
+    width, height = high - low + np.array([12, 18]) * dot
     shapes = [_circle(u, v, dot, f'fill="{USED}" fill-opacity="0.75"') for u, v in points[:: len(points) // 400 + 1]]
     if np.isfinite(radius):
         shapes.append(_circle(*center, radius, f'fill="none" stroke="{PROFILE}" stroke-width="{dot * 0.8:.3f}"'))

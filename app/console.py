@@ -103,9 +103,9 @@ class Console:
         self.server.gui.configure_theme(
             dark_mode=True, show_logo=False, show_share_button=False, brand_color=BRAND_COLOR
         )
-        self._panels = Panels(self.server, self._name, self._notes, self._post_from)
+        self.panels = Panels(self.server, self._name, self._notes, self._post_from)
         self._scene = SceneView(self.server, self.frame, self._pictures.television(None, "picture"), self._cloud_points)
-        self._panels.show(self.session, measuring=False)
+        self.panels.show(self.session, measuring=False)
         self._running = asyncio.run_coroutine_threadsafe(self._run(), self._loop)
         self.server.on_client_connect(self._page_opened)
         self.server.on_client_disconnect(self._page_closed)
@@ -177,7 +177,7 @@ class Console:
         """Show the session on every page; runs in a thread, and only one at a time."""
         for client in opened:
             self.pages[client.client_id] = self._new_page(client)
-        self._panels.show(self.session, self._takes_long)
+        self.panels.show(self.session, self._takes_long)
         self._scene.show(self.session.reconstruction)
         for client_id, page in list(self.pages.items()):
             try:
@@ -191,7 +191,7 @@ class Console:
         return PageView(
             client,
             self._pictures,
-            self._panels,
+            self.panels,
             self._scene,
             lambda event: self._post_from(client.client_id, event),
         )

@@ -76,7 +76,8 @@ class PagePanels:
             self._slider.max = max(count, 2)
         if self._slider.value != section + 1:
             self._slider.value = section + 1
-        self._slider.disabled = self._exclude.disabled = count == 0
+        for part in (self._chart, self._slider, self._exclude):
+            part.visible = count > 0
         self._exclude.label = "Put this section back" if section in excluded else "Exclude this section"
         text = escape(section_text(result, section))
         self._plane.content = (
@@ -93,15 +94,16 @@ class PagePanels:
             legend={"show": True, "live": False},
             height=CHART_HEIGHT_PX,
             padding=(8, 12, 0, 0),
+            visible=False,
         )
-        self._slider = self._gui.add_slider("Section", 1, 2, 1, 1, disabled=True, hint="Z and X step")
+        self._slider = self._gui.add_slider("Section", 1, 2, 1, 1, visible=False, hint="Z and X step")
         self._plane = self._gui.add_html("")
-        self._exclude = self._gui.add_button("Exclude this section", disabled=True, color="gray")
+        self._exclude = self._gui.add_button("Exclude this section", visible=False, color="gray")
         self._slider.on_update(self._choosing(lambda number: SectionChosen(int(number) - 1)))
         self._exclude.on_click(self._choosing(lambda _: SectionToggled(self._section)))
 
     def _add_picture(self) -> None:
-        opacity = self._gui.add_slider("Depth over the picture, %", 0, 100, 5, 0)
+        opacity = self._gui.add_slider("Depth, %", 0, 100, 5, 0)
         opacity.on_update(self._choosing(lambda percent: OpacityChosen(float(percent) / 100)))
         near_m, far_m = self._pictures.depth_range_m
         ends = f"<span>{1000 * near_m:.0f} mm</span><span>{1000 * far_m:.0f} mm</span>"

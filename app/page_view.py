@@ -3,7 +3,7 @@
 from collections.abc import Callable
 
 import numpy as np
-from viser import ClientHandle, SceneNodeDragEvent, SceneNodePointerEvent
+from viser import ClientHandle, NotificationHandle, SceneNodeDragEvent, SceneNodePointerEvent
 
 from app.camera_view import CameraView
 from app.charts import section_count
@@ -44,6 +44,7 @@ class PageView:
         self._view = ""
         self._dark = True
         self._notice_number = 0
+        self._notification: NotificationHandle | None = None
         self._world_pose: tuple[np.ndarray, ...] | None = None
         picture = self._camera_view.picture
         picture.on_click(self._clicked)
@@ -102,9 +103,14 @@ class PageView:
 
     def _show_notice(self, session: Session) -> None:
         notice = session.notice
+        if self._notification is not None and session.told_revision != session.revision:
+            self._notification.remove()
+            self._notification = None
         if notice is not None and notice.number > self._notice_number:
             self._notice_number = notice.number
-            self.client.add_notification(notice.title, notice.text, color="orange", auto_close_seconds=NOTICE_SECONDS)
+            self._notification = self.client.add_notification(
+                notice.title, notice.text, color="orange", auto_close_seconds=NOTICE_SECONDS
+            )
 
     async def _clicked(self, event: SceneNodePointerEvent) -> None:
         point = self._pixels.clicked(event)

@@ -1,5 +1,6 @@
 """The result as HTML: its numbers are those of `rotrecon.answer`, and every text from outside is escaped."""
 
+from collections.abc import Sequence
 from functools import lru_cache
 from html import escape
 from typing import Any
@@ -67,7 +68,7 @@ def why_html(session: Session) -> str:
         rows = [(c["kind"], f"{c['diameter_mm']:.1f} mm", f"{100 * c['score']:.0f} %") for c in content["candidates"]]
         blocks.append(("Candidates", _table(rows)))
     dropped = content["sections"]["dropped"].items()
-    rows = [("used", str(content["sections"]["used"]))] + [(REASONS.get(k, k), str(n)) for k, n in dropped]
+    rows = [("used", str(content["sections"]["used"]))] + [(REASONS.get(str(k), str(k)), str(n)) for k, n in dropped]
     blocks.append(("Sections", _table(rows)))
     if content["kind"] is not None:
         blocks.append(("Tools", _tools(result, content["reasons"])))
@@ -122,6 +123,6 @@ def _list(items: list[str]) -> str:
     return "<ul>" + "".join(f"<li>{escape(item)}</li>" for item in items) + "</ul>"
 
 
-def _table(rows: list[tuple[str, ...]]) -> str:
+def _table(rows: Sequence[tuple[str, ...]]) -> str:
     cells = ("".join(f"<td>{escape(cell)}</td>" for cell in row) for row in rows)
     return "<table>" + "".join(f"<tr>{row}</tr>" for row in cells) + "</table>"

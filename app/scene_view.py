@@ -1,10 +1,11 @@
 """The 3D scene in base coordinates, which all pages share: cloud, camera, limits, and the solid with its tool."""
 
 import numpy as np
+from numpy.typing import NDArray
 from viser import ClientHandle, ViserServer
 from viser import transforms as tf
 
-from rotrecon.arrays import Bytes, Floats
+from rotrecon.arrays import Bytes, Floats, Indices
 from rotrecon.axis import SpaceSections
 from rotrecon.camera import transform
 from rotrecon.frame import Frame
@@ -43,8 +44,9 @@ class SceneView:
             "/world/object",
             np.zeros((1, 3)),
             OBJECT_COLOR,
-            point_size=self._point_size_m() * 1.2,
+            point_size=self._point_size_m() * 0.6,
             precision="float32",
+            point_shading="flat",
             visible=False,
         )
 
@@ -56,7 +58,7 @@ class SceneView:
         if result is not None:
             pixel = result.segments.pixel[result.segmentation.kept]
             pixel = pixel[:: max(1, -(-len(pixel) // OBJECT_POINTS))]
-            self._object.points = self._in_base(pixel)
+            self._object.points = self._in_base(pixel).astype(np.float32)
         self._object.visible = result is not None
         solid = None if result is None else result.solid
         self._show_solid(solid)
@@ -70,8 +72,9 @@ class SceneView:
             "/section",
             points_m,
             SECTION_COLOR,
-            point_size=self._point_size_m() * 2,
+            point_size=self._point_size_m() * 1.2,
             precision="float32",
+            point_shading="flat",
             visible=sections is not None,
         )
 
@@ -100,7 +103,7 @@ class SceneView:
         is_camera = np.allclose(self._frame.T_base_camera, np.eye(4))
         return np.array([0.0, -1.0, 0.0]) if is_camera else np.array([0.0, 0.0, 1.0])
 
-    def _in_base(self, pixel: object) -> Floats:
+    def _in_base(self, pixel: Indices | NDArray[np.int64]) -> Floats:
         return transform(self._frame.T_base_camera, self._frame.points_m.reshape(-1, 3)[pixel])
 
     def _section_points(self, sections: SpaceSections, section: int) -> Floats:

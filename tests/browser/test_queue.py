@@ -1,0 +1,92 @@
+"""The one queue: a newer drawing overtakes, one measurement at a time, and a long one is seen to be under way."""
+
+from collections.abc import Iterator
+from threading import Event as Gate
+
+import pytest
+
+import app.console
+from app.console import Console, FromPage
+from app.events import Event, HandleMoved, PointerDragged, Refused
+from app.measuring import measure
+from rotrecon.drawing import Drawing
+from rotrecon.frame import Frame
+from rotrecon.settings import Settings
+
+WAIT_S = 10.0
+
+
+class SlowMeasure:
+    """Stands in for the measurement and takes as long as the test wants."""
+
+    def __init__(self) -> None:
+        self.started, self.may_end = Gate(), Gate()
+        self.drawings: list[Drawing] = []
+
+    def __call__(self, frame: Frame, drawing: Drawing, settings: Settings) -> Refused:
+        self.drawings.append(drawing)
+        self.started.set()
+        assert self.may_end.wait(WAIT_S)
+        return Refused(f"measured {len(self.drawings)}")
+
+
+@pytest.fixture
+def slow(monkeypatch: pytest.MonkeyPatch) -> Iterator[SlowMeasure]:
+    slow = SlowMeasure()
+    monkeypatch.setattr(app.console, "measure", slow)
+    yield slow
+    slow.may_end.set()
+
+
+def post(console: Console, *events: Event) -> None:
+    for event in events:
+        console.server.get_event_loop().call_soon_threadsafe(console.post, FromPage(-1, event))
+
+
+AREA = PointerDragged((50.0, 50.0), (150.0, 200.0))
+AXIS = PointerDragged((100.0, 60.0), (100.0, 190.0), shift=True)
+
+
+def test_the_newest_drawing_overtakes_those_between(console: Console, slow: SlowMeasure) -> None:
+    post(console, AREA, AXIS)
+    assert slow.started.wait(WAIT_S)
+    post(console, *(HandleMoved("axis", 1, (100.0 + n, 190.0)) for n in range(1, 30)))
+    slow.may_end.set()
+    console.wait_until_idle(WAIT_S)
+    assert len(slow.drawings) <= 3
+    assert slow.drawings[-1].axis.end_px == (129.0, 190.0)
+    assert console.session.up_to_date
+
+
+def test_a_long_measurement_is_shown_while_it_lasts(
+    console: Console, slow: SlowMeasure, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    shown = Gate()
+    show = console.panels.show
+
+    def watch(session: object, measuring: bool) -> None:
+        show(console.session, measuring)
+        if measuring:
+            shown.set()
+
+    monkeypatch.setattr(console.panels, "show", watch)
+    post(console, AREA, AXIS)
+    assert shown.wait(WAIT_S)
+    slow.may_end.set()
+    console.wait_until_idle(WAIT_S)
+    assert console.session.up_to_date
+
+
+def test_the_programs_own_mistake_is_told_and_not_the_end(
+    console: Console, monkeypatch: pytest.MonkeyPatch, caplog: pytest.LogCaptureFixture
+) -> None:
+    def broken(*_: object) -> None:
+        raise ZeroDivisionError
+
+    monkeypatch.setattr("app.measuring.reconstruct", broken)
+    monkeypatch.setattr(app.console, "measure", measure)
+    post(console, AREA, AXIS)
+    console.wait_until_idle(WAIT_S)
+    assert console.session.notice is not None
+    assert "its own mistake" in console.session.notice.text
+    assert "ZeroDivisionError" in caplog.text
