@@ -151,3 +151,23 @@ def _numbers(option: str, text: str, separator: str, count: int) -> list[float]:
     if len(numbers) != count:
         raise typer.BadParameter(f"{option} {text} is not {count} numbers; write them with '{separator}' between")
     return numbers
+
+
+@cli.command()
+def bench(
+    paper_method: Annotated[
+        Path | None, typer.Option(metavar="OUT.md", help="Write how good the paper's method is; takes minutes.")
+    ] = None,
+) -> None:
+    """Measure the program itself: its speed and size beside their targets, or the paper's method beside the truth."""
+    if paper_method is None:
+        from app.bench.console_speed import console_report  # no other command needs the benchmarks
+        from app.bench.speed import speed_report
+
+        typer.echo(speed_report())
+        typer.echo(f"\n{console_report()}")
+        return
+    from app.bench.paper_method import paper_method_document
+
+    write_whole(paper_method, paper_method_document().encode())
+    typer.echo(f"wrote {paper_method}")
