@@ -169,5 +169,6 @@ def bench(
         return
     from app.bench.paper_method import paper_method_document
 
+    paper_method.parent.mkdir(parents=True, exist_ok=True)
     write_whole(paper_method, paper_method_document().encode())
     typer.echo(f"wrote {paper_method}")

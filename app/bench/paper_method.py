@@ -5,7 +5,7 @@ import numpy as np
 from app.bench.measuring import Errors, Measured, measure
 from app.bench.poses import CAMERA, KINDS, STEREO
 from app.bench.speed import TARGET_PIXELS, stage_table
-from app.bench.table import mean_text, median_text, share_text, spread_text, table
+from app.bench.table import mean_text, median_text, share_text, spread_text, table, wrapped
 from app.bench.variations import (
     ALL_POINTS,
     ERRORS_REPLACED,
@@ -43,7 +43,7 @@ def paper_method_document(count: int = POSES, runs: int = 60) -> str:
         _minus_eleven(results),
         _stage_times(runs),
     ]
-    return "\n\n".join(parts) + "\n"
+    return wrapped("\n\n".join(parts)) + "\n"
 
 
 def _introduction(count: int) -> str:
@@ -53,9 +53,9 @@ def _introduction(count: int) -> str:
 
 Written by `rotrecon bench --paper-method docs/paper-method.md`; edit `app/bench/`, not this file.
 
-- **Objects**: those of the paper's table 2 in their true diameters: {sizes}. {count} poses of each, seeds 0 to
-  {count - 1} of the simulator, {DISTANCE_M[0]} to {DISTANCE_M[1]} m away, tilted by up to
-  {np.degrees(TILT_RAD):.0f} degrees out of the picture's plane, free in front of a wall.
+- **Objects**: those of the paper's table 2 in their true diameters: {sizes}.
+  {count} poses of each, seeds 0 to {count - 1} of the simulator, {DISTANCE_M[0]} to {DISTANCE_M[1]} m away,
+  tilted by up to {np.degrees(TILT_RAD):.0f} degrees out of the picture's plane, free in front of a wall.
 - **Camera**: {CAMERA.width} x {CAMERA.height} px, focal length {fx:.0f} px, principal point {cx:g}, {cy:g}.
 - **Exact depth** is ray-cast. **Noisy depth** is that of a stereo camera with a baseline of {STEREO.baseline_m} m:
   disparity is a mean over windows of {STEREO.window_px} x {STEREO.window_px} px, of the nearer surface where that fills
@@ -90,8 +90,8 @@ result. The ball's result is the circle through its section radii; equation (16)
 and the last centre, is the paper's other variant.
 
 - With exact depth the second cut is right to {max(exact):.2f} % in the worst pose: the method itself has no bias left.
-- With noisy depth its bias is {noisy["leg"]} % (leg), {noisy["ball"]} % (ball) and {noisy["wire"]} % (wire).
-  The paper's errors have the opposite sign for leg and wire; only equation (16) comes to its figure for the ball.
+- With noisy depth its bias is {noisy["leg"]} % (leg), {noisy["ball"]} % (ball) and {noisy["wire"]} % (wire), where the
+  paper has -11, -11 and -12 %. Of all these variants only equation (16), for the ball, comes near the paper's figure.
 - A wire that is measured too thick is no longer a rod by the limit of 30 mm, and so not recognised."""
 
 
@@ -106,8 +106,8 @@ Noisy depth. One step at a time is replaced by the truth or by something else; a
 
 {_comparison(results, STEPS_REPLACED)}
 
-"All points" is a circle of least squares through all points of a section, in the second cut; the first cut keeps its
-three points. The last row has the true mask, all points and the true axis at once.
+"All points" is a circle of least squares (Kasa's, which is linear) through all points of a section, in the second cut;
+the first cut keeps its three points. The last row has the true mask, all points and the true axis at once.
 
 - **Three points** cost most. S and F lie on the limbs, where depth is worst; a circle through all points brings the leg
   from {leg[0]} to {leg[2]} % and the wire from {wire[0]} to {wire[2]} %.
@@ -131,8 +131,9 @@ The paper's method on depth that lacks one of the errors; "windows" are the mean
 
 - **The windows** cause the bias. They pull the limbs' depth toward that of the middle, so the arc through S, C and F
   is flatter than the object. With noise but without windows {means(NO_WINDOWS)} % are left for leg and wire.
-- **Noise** costs spread rather than bias, as long as three points are used. A circle through all points is pulled
-  inward by white noise along the ray: {means(WHITE_ALL_POINTS)} % for leg and wire, which is the paper's sign."""
+- **Noise** alone costs little, as long as three points are used; on top of the windows it adds to bias and spread. A
+  circle through all points is pulled inward by white noise along the ray: {means(WHITE_ALL_POINTS)} % for leg and
+  wire. That is the paper's sign, but not its method: least squares is what it proposes for later."""
 
 
 def _minus_eleven(results: Results) -> str:
@@ -176,10 +177,10 @@ sections does not have it.
 {table(header, rows)}
 
 A line of pixels cuts a tilted cylinder along an ellipse. With the whole arc from limb to limb that hardly matters; with
-limbs lost, as in a cloud that was filtered beforehand (the paper's was), the three points see the flat side of the
-ellipse. Errors near the paper's appear there for tilts of 24 degrees and more, and the second cut removes them: it is
-right on exact depth whatever is lost. Objects parallel to the picture do not show them, and windows without a filter
-push the other way."""
+limbs lost, the three points see the flat side of the ellipse. A filter may lose them: the paper's cloud was filtered
+beforehand, and it does not say how. Errors near the paper's appear for tilts of 24 degrees and more with 15 to 25 %
+lost at each limb, and the second cut removes them: it is right on exact depth whatever is lost. Objects parallel to the
+picture do not show them, and windows without a filter push the other way."""
 
 
 def _stage_times(runs: int) -> str:

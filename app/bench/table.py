@@ -1,5 +1,6 @@
-"""Tables that read the same at a terminal and in a Markdown document."""
+"""Tables and text that read the same at a terminal and in a Markdown document."""
 
+import textwrap
 from collections.abc import Sequence
 
 import numpy as np
@@ -7,6 +8,7 @@ import numpy as np
 from rotrecon.arrays import Floats
 
 NONE = "-"
+LINE_LENGTH = 120
 
 
 def table(header: Sequence[str], rows: Sequence[Sequence[str]]) -> str:
@@ -20,6 +22,21 @@ def table(header: Sequence[str], rows: Sequence[Sequence[str]]) -> str:
 
     rule = "| " + " | ".join(["-" * widths[0], *("-" * (width - 1) + ":" for width in widths[1:])]) + " |"
     return "\n".join([line(header), rule, *map(line, rows)])
+
+
+def wrapped(text: str) -> str:
+    """Markdown whose paragraphs and list items are filled anew, after numbers were put into them."""
+    return "\n\n".join(_filled(block) for block in text.split("\n\n"))
+
+
+def _filled(block: str) -> str:
+    if block.startswith(("|", "#")):
+        return block
+    items = [" ".join(item.split()) for item in block.replace("\n- ", "\n\n- ").split("\n\n")]
+    return "\n".join(
+        textwrap.fill(item, LINE_LENGTH, subsequent_indent="  " * item.startswith("- "), break_on_hyphens=False)
+        for item in items
+    )
 
 
 def mean_text(values: Floats) -> str:
