@@ -18,6 +18,8 @@ PICTURE_M, LINES_M, HANDLES_M, BACKDROP_M = 1.0, 0.99, 0.98, 1.02
 """Depths of the nodes before the camera; the handles come first, so that they win over the picture."""
 BACKDROP_SIZE_M = 40.0
 HANDLE_RADIUS_PX = 9.0
+POSE_TOLERANCE = 1e-5
+"""Metres and radians that a page's camera may be off: a hundredth of a pixel."""
 USUAL_HANDLES = 6
 """Of a rectangle and an axis; a polygon of more corners gets more when it is drawn."""
 CLOSING_REACH_PX = 12.0
@@ -73,8 +75,10 @@ class CameraView:
         self._set_lines(self._area, pieces)
         ends = () if drawn.axis is None else (drawn.axis.start_px, drawn.axis.end_px)
         self._set_lines(self._axis, [] if not ends else _arrow(ends[0], ends[1], self._screen_px(16, page)))
-        places: list[tuple[Part, Pixel]] = [] if vertices_px else [("area", corner) for corner in corners]
-        places += [("axis", end) for end in ends]
+        places: list[tuple[Part, Pixel]] = []
+        if not vertices_px:
+            places.extend(("area", corner) for corner in corners)
+        places.extend(("axis", end) for end in ends)
         self._place_handles(places, page)
 
     def look(self, page: PageState) -> None:
@@ -84,13 +88,13 @@ class CameraView:
         up = -T[:3, 1]
         fov_rad = 2 * np.arctan(self._half_height(page))
         with self._client.atomic():
-            if not np.allclose(camera.up_direction, up, atol=1e-6):
+            if not np.allclose(camera.up_direction, up, atol=POSE_TOLERANCE):
                 camera.up_direction = up
-            if not np.allclose(camera.position, position, atol=1e-6):
+            if not np.allclose(camera.position, position, atol=POSE_TOLERANCE):
                 camera.position = position
-            if not np.allclose(camera.look_at, position + direction, atol=1e-6):
+            if not np.allclose(camera.look_at, position + direction, atol=POSE_TOLERANCE):
                 camera.look_at = position + direction
-            if abs(camera.fov - fov_rad) > 1e-6:
+            if abs(camera.fov - fov_rad) > POSE_TOLERANCE:
                 camera.fov = float(fov_rad)
             camera.min_orbit_distance = min(1.0, camera.max_orbit_distance)
             camera.max_orbit_distance = 1.0

@@ -107,8 +107,10 @@ def section_svg(result: Reconstruction | None, section: int) -> str:
     width, height = high - low + np.array([12, 18]) * dot
     shapes = [_circle(u, v, dot, f'fill="{USED}" fill-opacity="0.75"') for u, v in points[:: len(points) // 400 + 1]]
     if np.isfinite(radius):
-        shapes.append(_circle(*center, radius, f'fill="none" stroke="{PROFILE}" stroke-width="{dot * 0.8:.3f}"'))
-        shapes.append(_circle(*center, dot, f'fill="{PROFILE}"'))
+        shapes.append(
+            _circle(center[0], center[1], radius, f'fill="none" stroke="{PROFILE}" stroke-width="{dot * 0.8:.3f}"')
+        )
+        shapes.append(_circle(center[0], center[1], dot, f'fill="{PROFILE}"'))
     for name, (u, v) in zip("SCF", base, strict=True):
         if np.isfinite(u):
             shapes.append(_circle(u, v, dot * 1.8, f'fill="{LIT}"'))

@@ -8,7 +8,6 @@ from contextlib import redirect_stdout
 from dataclasses import dataclass
 from ipaddress import ip_address
 from threading import Event as ThreadEvent
-from typing import get_args
 
 from viser import CameraHandle, ClientHandle, ViserServer
 
@@ -113,7 +112,8 @@ class Console:
     def stop(self) -> None:
         """Close the server and every page."""
         self._running.cancel()
-        self.server.stop()
+        with redirect_stdout(io.StringIO()):
+            self.server.stop()
 
     async def idle(self) -> None:
         """Return, in viser's event loop, when the queue is empty, nothing is measured, and all is shown and flushed."""
@@ -146,7 +146,7 @@ class Console:
     def _take(self, item: Item) -> None:
         match item:
             case FromPage(client_id, event):
-                if isinstance(event, get_args(Event)):
+                if isinstance(event, Event):
                     self.session = step(self.session, event)
                 elif client_id in self.pages:
                     self.pages[client_id].take(event, self.session)
