@@ -7,7 +7,7 @@ CHECKED := rotrecon app tests scripts
 all: .venv/installed
 
 .venv/installed: pyproject.toml constraints.txt
-	$(PYTHON) -m venv .venv 2>/dev/null || (sudo=$$(command -v sudo); $$sudo apt-get update && $$sudo apt-get install -y python3-venv && $(PYTHON) -m venv .venv)
+	$(PYTHON) -m venv .venv >/dev/null 2>&1 || (sudo=$$(command -v sudo); $$sudo apt-get update && $$sudo apt-get install -y python3-venv && $(PYTHON) -m venv .venv)
 	$(BIN)/pip install --quiet --constraint constraints.txt --editable .
 	touch $@
 

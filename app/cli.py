@@ -14,17 +14,17 @@ from rotrecon.drawing import Drawing, DrawingError
 from rotrecon.errors import SceneError
 from rotrecon.files import write_whole
 from rotrecon.fitting import FitFailure
-from rotrecon.formats.image import encode_png
 from rotrecon.frame import Capture, Frame, FrameUnavailable
-from rotrecon.importing import ImportOptions, import_scene
-from rotrecon.intrinsics import Intrinsics
 from rotrecon.overlay import outlines, with_outlines, with_segmentation
 from rotrecon.reconstruct import Reconstruction, reconstruct
-from rotrecon.scene import read_scene
+from rotrecon.scene.formats.image import encode_png
+from rotrecon.scene.importing import ImportOptions, import_scene
+from rotrecon.scene.intrinsics import Intrinsics
+from rotrecon.scene.reading import read_scene
 from rotrecon.settings import Method, Settings
-from rotrecon.simulate import simulate as simulate_object
+from rotrecon.simulation.simulate import simulate as simulate_object
+from rotrecon.simulation.truth import TRUTH_FILE, write_simulated
 from rotrecon.tools import ToolTableError, default_tools, read_tools
-from rotrecon.truth import TRUTH_FILE, write_simulated
 
 cli = typer.Typer(
     add_completion=False,

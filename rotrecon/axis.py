@@ -32,18 +32,14 @@ class Axis:
 
 
 @dataclass(frozen=True, eq=False)
-class AxisFit:
+class FittedAxis(Axis):
     """An axis, and which of the S section centres it rests on."""
 
-    axis: Axis
     on_axis: Bools
     """(S,) False where there is no centre, or it lies farther from the axis than the mean."""
 
-    def __post_init__(self) -> None:
-        freeze(self)
 
-
-def fit_axis(circles: SectionCircles, settings: Settings) -> AxisFit | None:
+def fit_axis(circles: SectionCircles, settings: Settings) -> FittedAxis | None:
     """The axis through the centres of the circles.
 
     Total least squares in space takes the place of the two projections of paper (10), which cannot hold an axis along
@@ -60,7 +56,7 @@ def fit_axis(circles: SectionCircles, settings: Settings) -> AxisFit | None:
     limit = max(float(distance[used].mean()), settings.distance_floor_m)
     on_axis = used & (distance <= limit)
     second = _line_through(circles.center_m[on_axis])
-    return None if second is None else AxisFit(second, on_axis)
+    return None if second is None else FittedAxis(second.point_m, second.direction, on_axis)
 
 
 def _line_through(centers_m: Floats) -> Axis | None:
@@ -122,6 +118,13 @@ class SpaceSections:
         """Points (n, 2) of one section in its own plane, metres from the axis: across, and toward the camera."""
         points = self._points(self.pixel[self.start[section] : self.start[section + 1]]) - self.axis.point_m
         return np.stack([points @ self.across, points @ self.toward_camera], axis=1)
+
+
+def span_along(axis: Axis, circles: SectionCircles) -> tuple[float, float]:
+    """How far along an axis the used circles reach, half a section beyond the outermost centres."""
+    along = axis.along(circles.center_m)[circles.used]
+    margin = float(np.ptp(along)) / (2 * len(along))
+    return float(along.min()) - margin, float(along.max()) + margin
 
 
 def cut_in_space(cloud_m: Cloud, pixel: Indices, axis: Axis, ends_m: tuple[float, float], count: int) -> SpaceSections:

@@ -6,7 +6,7 @@ from enum import StrEnum
 import numpy as np
 
 from rotrecon.arrays import Bytes, Cloud, Floats, blocks, freeze
-from rotrecon.axis import Axis, SpaceSections
+from rotrecon.axis import Axis, FittedAxis, SpaceSections
 from rotrecon.circles import SectionCircles, SectionState
 from rotrecon.primitives import Frustum, Kind, Primitive, Sphere
 from rotrecon.radii import RadiusFit, axis_length_radius
@@ -57,7 +57,7 @@ class Fit:
 def fit_solid(
     radii: RadiusFit,
     kind: Kind | None,
-    axis: Axis,
+    axis: FittedAxis,
     circles: SectionCircles,
     sections: SpaceSections,
     settings: Settings,
@@ -78,7 +78,7 @@ def fit_solid(
         rms_m=_rms(solid, sections.points_of(used)),
         arc_rad=float(np.median(circles.arc_rad[used])),
         concave=bool(np.median(circles.concave[used]) > 0.5),
-        axis_length_radius_m=axis_length_radius(circles.center_m[used]) if radii.shape == "sphere" else None,
+        axis_length_radius_m=axis_length_radius(circles.center_m[axis.on_axis]) if radii.shape == "sphere" else None,
     )
 
 

@@ -5,7 +5,7 @@ from dataclasses import dataclass, replace
 import numpy as np
 
 from rotrecon.arrays import Bools, Cloud, Floats, Indices, blocks
-from rotrecon.axis import Axis, AxisFit, SpaceSections, cut_in_space, fit_axis
+from rotrecon.axis import FittedAxis, SpaceSections, cut_in_space, fit_axis, span_along
 from rotrecon.circles import SectionCircles, SectionState, base_points, circumcircles
 from rotrecon.drawing import CrossSegments, Drawing, DrawingError, cut_sections
 from rotrecon.fitting import FailureReason, Fit, FitFailure, fit_solid
@@ -24,7 +24,7 @@ class Cut:
     """The circles of one cut through the object, and the axis through their centres."""
 
     circles: SectionCircles
-    axis: AxisFit | None
+    axis: FittedAxis | None
 
 
 @dataclass(frozen=True, eq=False)
@@ -68,7 +68,7 @@ def reconstruct(frame: Frame, drawing: Drawing, settings: Settings) -> Reconstru
         return result
     sections, second = _cut_in_space(result, first, first.axis)
     result = replace(result, sections=sections, second_cut=second, fit=_why_not(second.circles, segmentation, settings))
-    return result if second.axis is None else _with_solid(result, first, second, second.axis.axis, sections)
+    return result if second.axis is None else _with_solid(result, first, second, second.axis, sections)
 
 
 def _usable_depth(frame: Frame, segments: CrossSegments) -> tuple[Cloud, Bools]:
@@ -93,7 +93,7 @@ def _cut(points_m: Floats, count: Indices, settings: Settings, excluded: frozens
     return Cut(circles, fit_axis(circles, settings))
 
 
-def _cut_in_space(result: Reconstruction, first: Cut, axis: AxisFit) -> tuple[SpaceSections, Cut]:
+def _cut_in_space(result: Reconstruction, first: Cut, axis: FittedAxis) -> tuple[SpaceSections, Cut]:
     """The segmented pixels cut anew across the axis in space, and again while the axis so found still turns.
 
     A cut tilted by t gives radii wrong by about t^2 / 2. The operator's exclusions come last, so that they do not
@@ -103,24 +103,19 @@ def _cut_in_space(result: Reconstruction, first: Cut, axis: AxisFit) -> tuple[Sp
     pixel = result.segments.pixel[result.segmentation.kept]
     cloud_m = result.frame.points_m
     count = len(first.circles.state)
-    sections = cut_in_space(cloud_m, pixel, axis.axis, _span(axis, first.circles), count)
+    sections = cut_in_space(cloud_m, pixel, axis, span_along(axis, first.circles), count)
     for _ in range(settings.cuts_in_space - 1):
         cut = _cut(*sections.base_points(), settings)
-        if cut.axis is None or cut.axis.axis.direction @ axis.axis.direction > np.cos(settings.axis_settled_rad):
+        if cut.axis is None or cut.axis.direction @ axis.direction > np.cos(settings.axis_settled_rad):
             break
         axis = cut.axis
-        sections = cut_in_space(cloud_m, pixel, axis.axis, _span(axis, cut.circles), count)
+        sections = cut_in_space(cloud_m, pixel, axis, span_along(axis, cut.circles), count)
     return sections, _cut(*sections.base_points(), settings, result.drawing.excluded_sections)
 
 
-def _span(axis: AxisFit, circles: SectionCircles) -> tuple[float, float]:
-    """How far along the axis the used circles reach, half a section beyond the outermost centres."""
-    along = axis.axis.along(circles.center_m)[circles.used]
-    margin = float(np.ptp(along)) / (2 * len(along))
-    return float(along.min()) - margin, float(along.max()) + margin
-
-
-def _with_solid(result: Reconstruction, first: Cut, second: Cut, axis: Axis, sections: SpaceSections) -> Reconstruction:
+def _with_solid(
+    result: Reconstruction, first: Cut, second: Cut, axis: FittedAxis, sections: SpaceSections
+) -> Reconstruction:
     """The reconstruction with its solid, or the reason why the kind asked for does not exist."""
     circles, settings, kind = second.circles, result.settings, result.drawing.kind
     along = axis.along(circles.center_m)
@@ -153,7 +148,7 @@ def _with_solid(result: Reconstruction, first: Cut, second: Cut, axis: Axis, sec
 def _radius_from(cut: Cut, shape: Shape, settings: Settings) -> float | None:
     """The radius, at the middle of its length, that one cut alone gives for a shape."""
     assert cut.axis is not None
-    along = cut.axis.axis.along(cut.circles.center_m)
+    along = cut.axis.along(cut.circles.center_m)
     radii = fit_radii(shape, along, cut.circles.radius_m, cut.circles.used, settings)
     return None if radii is None else radii.radius_at_middle(along)
 

@@ -10,7 +10,7 @@ from rosbags.rosbag2 import Writer as Writer2
 from rosbags.typesys import Stores, get_typestore
 
 from rotrecon.camera import PinholeCamera
-from rotrecon.intrinsics import Intrinsics
+from rotrecon.scene.intrinsics import Intrinsics
 
 TRUTH = Intrinsics(50.0, 52.0, 15.25, 11.5)
 CAMERA = PinholeCamera(32, 24, TRUTH.K)

@@ -6,7 +6,7 @@ import numpy as np
 from plyfile import PlyData, PlyElement
 from pypcd4 import Encoding, PointCloud
 
-from rotrecon.formats.source import SourceFile
+from rotrecon.scene.formats.source import SourceFile
 
 SHAPE = (4, 5, 3)
 

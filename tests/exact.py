@@ -7,7 +7,7 @@ from rotrecon.camera import PinholeCamera
 from rotrecon.drawing import AreaOfInterest, Drawing, ObjectAxis
 from rotrecon.frame import Frame
 from rotrecon.primitives import Frustum, Kind, Primitive, Sphere, basis_across
-from rotrecon.raycast import first_hit
+from rotrecon.simulation.raycast import first_hit
 
 CAMERA = PinholeCamera(320, 240, np.array([[400.0, 0, 159.5], [0, 400.0, 119.5], [0, 0, 1]]))
 WALL_M = 2.5

@@ -11,10 +11,10 @@ import tomli_w
 
 from rotrecon.camera import PinholeCamera
 from rotrecon.errors import SceneError
-from rotrecon.formats.image import encode_png
-from rotrecon.formats.npz import encode_npz
 from rotrecon.frame import Frame
-from rotrecon.scene import read_scene
+from rotrecon.scene.formats.image import encode_png
+from rotrecon.scene.formats.npz import encode_npz
+from rotrecon.scene.reading import read_scene
 
 WIDTH, HEIGHT = 8, 6
 CAMERA = PinholeCamera(WIDTH, HEIGHT, np.array([[10.0, 0, 3.5], [0, 11.0, 2.5], [0, 0, 1]]))

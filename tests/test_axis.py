@@ -31,7 +31,7 @@ def test_exact_centres_give_their_line_in_any_direction_and_lose_none(seed):
     direction /= np.linalg.norm(direction)
     found = fit_axis(circles_at(rng.normal(size=3) + np.linspace(0, 0.3, 20)[:, None] * direction), PAPER)
     assert found is not None
-    assert found.axis.direction == pytest.approx(direction, abs=1e-9)
+    assert found.direction == pytest.approx(direction, abs=1e-9)
     assert found.on_axis.all()
 
 
@@ -42,7 +42,7 @@ def test_a_centre_far_off_does_not_turn_the_axis():
     found = fit_axis(circles_at(centers), PAPER)
     assert found is not None
     assert not found.on_axis[29]
-    assert found.axis.direction == pytest.approx([0, 1, 0], abs=2e-3)
+    assert found.direction == pytest.approx([0, 1, 0], abs=2e-3)
 
 
 def test_centres_in_a_heap_hold_no_axis():

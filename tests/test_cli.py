@@ -8,9 +8,9 @@ import pytest
 
 from app.cli import main
 from rotrecon.frame import Frame
-from rotrecon.scene import SceneRecord, write_scene
-from rotrecon.simulate import simulate
-from rotrecon.truth import write_simulated
+from rotrecon.scene.writing import SceneRecord, write_scene
+from rotrecon.simulation.simulate import simulate
+from rotrecon.simulation.truth import write_simulated
 from tests.exact import CAMERA
 from tests.recordings import recording
 

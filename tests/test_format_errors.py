@@ -17,10 +17,10 @@ from hypothesis import strategies as st
 from pypcd4 import Encoding
 
 from rotrecon.errors import SceneError
-from rotrecon.formats.cloud_file import read_cloud
-from rotrecon.formats.depth import read_depth
-from rotrecon.formats.image import encode_png, read_image
-from rotrecon.formats.npz import encode_npz
+from rotrecon.scene.formats.cloud_file import read_cloud
+from rotrecon.scene.formats.depth import read_depth
+from rotrecon.scene.formats.image import encode_png, read_image
+from rotrecon.scene.formats.npz import encode_npz
 from tests.clouds import sample, source, write_pcd, write_ply
 
 

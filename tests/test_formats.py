@@ -11,11 +11,11 @@ from hypothesis.extra.numpy import arrays
 from plyfile import PlyElement
 from pypcd4 import Encoding
 
-from rotrecon.formats.cloud import RawCloud
-from rotrecon.formats.cloud_file import read_cloud
-from rotrecon.formats.depth import read_depth
-from rotrecon.formats.image import encode_png, read_image
-from rotrecon.formats.npz import encode_npz
+from rotrecon.scene.formats.cloud import RawCloud
+from rotrecon.scene.formats.cloud_file import read_cloud
+from rotrecon.scene.formats.depth import read_depth
+from rotrecon.scene.formats.image import encode_png, read_image
+from rotrecon.scene.formats.npz import encode_npz
 from tests.clouds import SHAPE, packed, sample, source, write_pcd, write_ply
 
 LAWS = settings(deadline=None, max_examples=25)

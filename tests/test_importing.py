@@ -11,12 +11,12 @@ from rosbags.rosbag2 import StoragePlugin
 
 from rotrecon.camera import PinholeCamera
 from rotrecon.errors import SceneError
-from rotrecon.formats.image import encode_png
-from rotrecon.formats.npz import encode_npz
 from rotrecon.frame import Capture
-from rotrecon.importing import ImportOptions, import_scene
-from rotrecon.intrinsics import Intrinsics, recover_intrinsics
-from rotrecon.scene import read_scene
+from rotrecon.scene.formats.image import encode_png
+from rotrecon.scene.formats.npz import encode_npz
+from rotrecon.scene.importing import ImportOptions, import_scene
+from rotrecon.scene.intrinsics import Intrinsics, recover_intrinsics
+from rotrecon.scene.reading import read_scene
 from tests.bags import CAMERA, TOPIC, TRUTH, colors, depth, write_bag
 from tests.recordings import recording
 

@@ -4,10 +4,10 @@ import numpy as np
 import pytest
 
 from rotrecon.camera import PinholeCamera
-from rotrecon.formats.image import encode_png
-from rotrecon.formats.npz import encode_npz
-from rotrecon.lens import Lens, pixel_grid
-from rotrecon.scene import read_scene
+from rotrecon.scene.formats.image import encode_png
+from rotrecon.scene.formats.npz import encode_npz
+from rotrecon.scene.lens import Lens, pixel_grid
+from rotrecon.scene.reading import read_scene
 from tests.scenes import CAMERA, HEIGHT, WIDTH, assert_refused, save, table
 
 WIDE = PinholeCamera(80, 60, np.array([[70.0, 0, 39.5], [0, 70.0, 29.5], [0, 0, 1]]))

@@ -6,8 +6,8 @@ from hypothesis import strategies as st
 from hypothesis.extra.numpy import arrays
 from plyfile import PlyData, PlyElement
 
-from rotrecon.organise import z_buffer
-from rotrecon.scene import read_scene
+from rotrecon.scene.organise import z_buffer
+from rotrecon.scene.reading import read_scene
 from tests.scenes import CAMERA, HEIGHT, WIDTH, sample_frame, save, table
 
 LAWS = settings(deadline=None, max_examples=25)

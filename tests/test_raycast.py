@@ -4,7 +4,7 @@ import numpy as np
 import pytest
 
 from rotrecon.primitives import Frustum, Sphere
-from rotrecon.raycast import Plane, Shape, first_hit, outward_normals
+from rotrecon.simulation.raycast import Plane, Shape, first_hit, outward_normals
 
 AXIS = np.array([0.0, 0.0, 1.0])
 CYLINDER = Frustum("cylinder", np.zeros(3), AXIS, 0.4, 0.05)

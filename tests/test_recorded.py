@@ -6,9 +6,9 @@ from app.drawing_text import parse_area, parse_axis
 from rotrecon.answer import answer
 from rotrecon.drawing import Drawing
 from rotrecon.frame import Frame, FrameUnavailable
-from rotrecon.importing import import_scene
 from rotrecon.reconstruct import reconstruct
-from rotrecon.scene import read_scene
+from rotrecon.scene.importing import import_scene
+from rotrecon.scene.reading import read_scene
 from rotrecon.settings import Settings
 from tests.recordings import recording
 

@@ -5,8 +5,8 @@ import pytest
 
 from rotrecon.camera import PinholeCamera, inverse, transform
 from rotrecon.primitives import Frustum
-from rotrecon.rendering import RenderedView, render
-from rotrecon.simulate import OBJECTS, Simulated, simulate
+from rotrecon.simulation.rendering import RenderedView, render
+from rotrecon.simulation.simulate import OBJECTS, Simulated, simulate
 
 SMALL = PinholeCamera(320, 240, np.array([[300.0, 0, 159.5], [0, 300.0, 119.5], [0, 0, 1]]))
 

@@ -13,9 +13,10 @@ from hypothesis import strategies as st
 from hypothesis.extra.numpy import arrays
 
 from rotrecon.errors import SceneError
-from rotrecon.formats.npz import encode_npz
 from rotrecon.frame import DepthCameraNoise, Frame, FrameUnavailable, StereoNoise
-from rotrecon.scene import SHADED_NOTE, SceneRecord, read_scene, write_scene
+from rotrecon.scene.formats.npz import encode_npz
+from rotrecon.scene.reading import SHADED_NOTE, read_scene
+from rotrecon.scene.writing import SceneRecord, write_scene
 from rotrecon.workspace import Workspace
 from tests.recordings import FRAMES, recording
 from tests.scenes import CAMERA, HEIGHT, TURNED, WIDTH, sample_frame, save, table, with_views

@@ -5,7 +5,7 @@ from datetime import datetime
 import numpy as np
 import pytest
 
-from rotrecon.formats.npz import encode_npz
+from rotrecon.scene.formats.npz import encode_npz
 from tests.scenes import TURNED, assert_refused, save, table, with_views
 
 REMOVED = object()

@@ -29,7 +29,7 @@ from app.session import HISTORY_LENGTH, Session, step
 from rotrecon.drawing import AreaOfInterest, ObjectAxis
 from rotrecon.reconstruct import Reconstruction, reconstruct
 from rotrecon.settings import Settings
-from rotrecon.simulate import simulate
+from rotrecon.simulation.simulate import simulate
 
 SIZE_PX = (640, 480)
 EMPTY = Session(SIZE_PX)

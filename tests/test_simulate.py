@@ -9,12 +9,12 @@ import pytest
 
 from rotrecon.camera import PinholeCamera, is_rigid, transform
 from rotrecon.frame import StereoNoise
-from rotrecon.ideal_drawing import as_arguments, ideal_drawing, outline_px, perturb
 from rotrecon.primitives import Frustum, Primitive
-from rotrecon.scene import read_scene
-from rotrecon.simulate import DEFAULT_CAMERA, OBJECTS, TILT_RAD, simulate
-from rotrecon.stereo_noise import StereoErrors
-from rotrecon.truth import write_simulated
+from rotrecon.scene.reading import read_scene
+from rotrecon.simulation.ideal_drawing import as_arguments, ideal_drawing, outline_px, perturb
+from rotrecon.simulation.simulate import DEFAULT_CAMERA, OBJECTS, TILT_RAD, simulate
+from rotrecon.simulation.stereo_noise import StereoErrors
+from rotrecon.simulation.truth import write_simulated
 
 SMALL = PinholeCamera(320, 240, np.array([[300.0, 0, 159.5], [0, 300.0, 119.5], [0, 0, 1]]))
 WIDE = PinholeCamera(1280, 720, np.array([[900.0, 0, 639.5], [0, 900.0, 359.5], [0, 0, 1]]))

@@ -4,9 +4,9 @@ import numpy as np
 import pytest
 
 from rotrecon.camera import PinholeCamera
-from rotrecon.rendering import RenderedView
-from rotrecon.simulate import simulate
-from rotrecon.stereo_noise import StereoErrors, correlated_noise, hidden_from_second, stereo_depth
+from rotrecon.simulation.rendering import RenderedView
+from rotrecon.simulation.simulate import simulate
+from rotrecon.simulation.stereo_noise import StereoErrors, correlated_noise, hidden_from_second, stereo_depth
 
 CAMERA = PinholeCamera(640, 480, np.array([[600.0, 0, 319.5], [0, 600.0, 239.5], [0, 0, 1]]))
 FOCAL_BASELINE = 60.0

@@ -6,8 +6,8 @@ from dataclasses import dataclass, replace
 import numpy as np
 
 from app.bench.least_squares import least_squares_circles
-from rotrecon.arrays import Bools, Floats, Indices
-from rotrecon.axis import Axis, AxisFit, SpaceSections, cut_in_space, fit_axis
+from rotrecon.arrays import Bools, Indices
+from rotrecon.axis import Axis, FittedAxis, SpaceSections, cut_in_space, fit_axis, span_along
 from rotrecon.circles import SectionCircles, base_points, circumcircles
 from rotrecon.drawing import Drawing, cut_sections
 from rotrecon.frame import Frame
@@ -54,13 +54,17 @@ def compose(frame: Frame, drawing: Drawing, settings: Settings, steps: Steps) ->
     second = circumcircles(*sections.base_points(), settings)
     if steps.least_squares:
         second = least_squares_circles(second, sections)
-    second_axis = fit_axis(second, tolerance) if steps.axis is None else AxisFit(steps.axis, second.used)
+    second_axis = (
+        fit_axis(second, tolerance)
+        if steps.axis is None
+        else FittedAxis(steps.axis.point_m, steps.axis.direction, second.used)
+    )
     if second_axis is None:
         return Radii(_radius(first, first_axis, drawing, tolerance))
     return Radii(
         _radius(first, first_axis, drawing, tolerance),
         _radius(second, second_axis, drawing, tolerance),
-        _axis_length(second, second_axis, drawing, tolerance),
+        _axis_length(second, second_axis, drawing),
     )
 
 
@@ -74,39 +78,29 @@ def _object_pixels(frame: Frame, drawing: Drawing, settings: Settings, steps: St
 
 
 def _sections_in_space(
-    frame: Frame, pixel: Indices, first: SectionCircles, first_axis: AxisFit, settings: Settings, steps: Steps
+    frame: Frame, pixel: Indices, first: SectionCircles, first_axis: FittedAxis, settings: Settings, steps: Steps
 ) -> SpaceSections:
     """The pixels (M,) cut across the axis in space, until the axis settles, or across the axis that is given."""
     count = len(first.state)
-    axis, circles = steps.axis or first_axis.axis, first
-    sections = cut_in_space(frame.points_m, pixel, axis, _span(axis, circles), count)
+    axis, circles = steps.axis or first_axis, first
+    sections = cut_in_space(frame.points_m, pixel, axis, span_along(axis, circles), count)
     for _ in range(settings.cuts_in_space - 1 if steps.axis is None else 0):
         circles = circumcircles(*sections.base_points(), settings)
         fitted = fit_axis(circles, settings)
-        if fitted is None or fitted.axis.direction @ axis.direction > np.cos(settings.axis_settled_rad):
+        if fitted is None or fitted.direction @ axis.direction > np.cos(settings.axis_settled_rad):
             break
-        axis = fitted.axis
-        sections = cut_in_space(frame.points_m, pixel, axis, _span(axis, circles), count)
+        axis = fitted
+        sections = cut_in_space(frame.points_m, pixel, axis, span_along(axis, circles), count)
     return sections
 
 
-def _span(axis: Axis, circles: SectionCircles) -> tuple[float, float]:
-    along = axis.along(circles.center_m)[circles.used]
-    margin = float(np.ptp(along)) / (2 * len(along))
-    return float(along.min()) - margin, float(along.max()) + margin
-
-
-def _radius(circles: SectionCircles, fitted: AxisFit, drawing: Drawing, tolerance: Settings) -> float:
+def _radius(circles: SectionCircles, fitted: FittedAxis, drawing: Drawing, tolerance: Settings) -> float:
     assert drawing.kind is not None
-    along = fitted.axis.along(circles.center_m)
+    along = fitted.along(circles.center_m)
     radii = fit_radii(SHAPE_OF_KIND[drawing.kind], along, circles.radius_m, circles.used, tolerance)
     return np.nan if radii is None else radii.radius_at_middle(along)
 
 
-def _axis_length(circles: SectionCircles, fitted: AxisFit, drawing: Drawing, tolerance: Settings) -> float:
-    """Equation (16) over the sections whose radius is not odd."""
-    if drawing.kind != "sphere":
-        return np.nan
-    along: Floats = fitted.axis.along(circles.center_m)
-    radii = fit_radii("sphere", along, circles.radius_m, circles.used, tolerance)
-    return np.nan if radii is None else axis_length_radius(circles.center_m[radii.kept])
+def _axis_length(circles: SectionCircles, fitted: FittedAxis, drawing: Drawing) -> float:
+    """Equation (16) over the centres that lie on the axis."""
+    return axis_length_radius(circles.center_m[fitted.on_axis]) if drawing.kind == "sphere" else np.nan

@@ -9,7 +9,7 @@ from rotrecon.camera import PinholeCamera
 from rotrecon.drawing import AreaOfInterest, Drawing, ObjectAxis
 from rotrecon.frame import Frame
 from rotrecon.primitives import Frustum, basis_across
-from rotrecon.raycast import first_hit
+from rotrecon.simulation.raycast import first_hit
 from rotrecon.workspace import Workspace
 
 CAMERA = PinholeCamera(1280, 960, np.array([[900.0, 0, 639.5], [0, 900.0, 479.5], [0, 0, 1]]))

@@ -11,7 +11,7 @@ from app.console import Console
 from app.object_drawing import Pixel
 from rotrecon.arrays import Floats
 from rotrecon.settings import Settings
-from rotrecon.simulate import Simulated, simulate
+from rotrecon.simulation.simulate import Simulated, simulate
 
 OBJECT = "leg"
 UPDATES = 5

@@ -22,7 +22,7 @@ from app.bench.variations import (
     Variation,
 )
 from rotrecon.arrays import Floats
-from rotrecon.simulate import DISTANCE_M, OBJECTS, TILT_RAD
+from rotrecon.simulation.simulate import DISTANCE_M, OBJECTS, TILT_RAD
 
 POSES = 50
 PAPER_PERCENT = {"leg": "-11", "ball": "-11", "wire": "-12"}
@@ -168,7 +168,7 @@ what did.
 {table(("equation (16)", *_headers("ball")), lengths)}
 
 Equation (16) needs sections that reach both poles. Near a pole three points are almost in line and the section is
-skipped, and the rejection of odd radii drops more. On noisy depth that gives {noisy_length} % without any
+skipped, and the rejection of centres off the axis drops more. On noisy depth that gives {noisy_length} % without any
 error of calibration, where the paper has {PAPER_PERCENT["ball"]} %; the circle through the radii of the same
 sections does not have it.
 

@@ -10,8 +10,8 @@ from rotrecon.camera import PinholeCamera
 from rotrecon.drawing import Drawing
 from rotrecon.frame import Frame
 from rotrecon.primitives import Kind
-from rotrecon.simulate import Simulated, simulate
-from rotrecon.stereo_noise import StereoErrors, stereo_depth
+from rotrecon.simulation.simulate import Simulated, simulate
+from rotrecon.simulation.stereo_noise import StereoErrors, stereo_depth
 
 CAMERA = PinholeCamera(1280, 720, np.array([[900.0, 0, 639.5], [0, 900.0, 359.5], [0, 0, 1]]))
 STEREO = StereoErrors(baseline_m=0.1)

@@ -60,7 +60,7 @@ def _stages(result: Reconstruction) -> dict[str, Callable[[], object]]:
     assert second.axis is not None
     depth_m = frame.points_m.reshape(-1, 3)[segments.pixel, 2]
     usable = segments.inside & np.isfinite(depth_m)
-    circles, axis, pixel = second.circles, second.axis.axis, segments.pixel[kept]
+    circles, axis, pixel = second.circles, second.axis, segments.pixel[kept]
     along = axis.along(circles.center_m)
     ends_m = (float(np.nanmin(along)), float(np.nanmax(along)))
     curves = {shape: fit_radii(shape, along, circles.radius_m, circles.used, SETTINGS) for shape in SHAPES}

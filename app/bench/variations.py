@@ -6,7 +6,7 @@ from dataclasses import dataclass, replace
 from app.bench.composition import Mask, Steps
 from app.bench.poses import STEREO, Pose
 from rotrecon.arrays import Bools, Indices
-from rotrecon.stereo_noise import StereoErrors
+from rotrecon.simulation.stereo_noise import StereoErrors
 
 
 @dataclass(frozen=True)

@@ -9,8 +9,8 @@ from playwright.sync_api import Browser, ViewportSize, sync_playwright
 from app.console import Console
 from rotrecon.camera import PinholeCamera
 from rotrecon.settings import Settings
-from rotrecon.simulate import Simulated, simulate
-from rotrecon.stereo_noise import StereoErrors
+from rotrecon.simulation.simulate import Simulated, simulate
+from rotrecon.simulation.stereo_noise import StereoErrors
 from tests.browser.operator import CHROMIUM, CHROMIUM_ARGS, Operator
 
 SMALL_CAMERA = PinholeCamera(320, 240, np.array([[300.0, 0, 165.0], [0, 301.0, 117.0], [0, 0, 1]]))

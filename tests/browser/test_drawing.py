@@ -11,7 +11,7 @@ from rotrecon.answer import answer
 from rotrecon.drawing import AreaOfInterest
 from rotrecon.reconstruct import reconstruct
 from rotrecon.settings import Settings
-from rotrecon.simulate import Simulated
+from rotrecon.simulation.simulate import Simulated
 from tests.browser.operator import Operator
 
 TOLERANCE_PX = 0.6

@@ -8,7 +8,7 @@ from playwright.sync_api import Browser, expect
 from app.console import Console, announcements
 from app.events import Event, PointerDragged, PolygonClosed, VertexClicked
 from rotrecon.settings import Settings
-from rotrecon.simulate import Simulated
+from rotrecon.simulation.simulate import Simulated
 from tests.browser.conftest import VIEWPORT
 from tests.browser.operator import Operator
 

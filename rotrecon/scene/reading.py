@@ -7,15 +7,15 @@ import numpy as np
 from rotrecon.arrays import Bytes, Cloud, Floats
 from rotrecon.camera import PinholeCamera
 from rotrecon.errors import SceneError
-from rotrecon.formats.cloud_file import read_cloud
-from rotrecon.formats.depth import read_depth
-from rotrecon.formats.image import read_image
-from rotrecon.formats.source import SourceFile
 from rotrecon.frame import Capture, DepthCameraNoise, DepthNoise, Frame, StereoNoise, View
-from rotrecon.lens import Lens
-from rotrecon.organise import RAY_TOLERANCE_PX, distance_from_rays_px, shade, z_buffer
-from rotrecon.scene_rules import check_scene
-from rotrecon.scene_schema import (
+from rotrecon.scene.formats.cloud_file import read_cloud
+from rotrecon.scene.formats.depth import read_depth
+from rotrecon.scene.formats.image import read_image
+from rotrecon.scene.formats.source import SourceFile
+from rotrecon.scene.lens import Lens
+from rotrecon.scene.organise import RAY_TOLERANCE_PX, distance_from_rays_px, shade, z_buffer
+from rotrecon.scene.rules import check_scene
+from rotrecon.scene.schema import (
     SCENE_FILE,
     CameraTable,
     DepthNoiseTable,
@@ -27,10 +27,7 @@ from rotrecon.scene_schema import (
     WorkspaceTable,
     parse_scene,
 )
-from rotrecon.scene_writing import SceneRecord, write_scene
 from rotrecon.workspace import Workspace
-
-__all__ = ["SceneError", "SceneRecord", "read_scene", "write_scene"]
 
 SHADED_NOTE = "The scene has no picture: what is shown is shaded depth."
 

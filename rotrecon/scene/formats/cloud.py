@@ -7,8 +7,8 @@ import numpy as np
 from numpy.typing import NDArray
 
 from rotrecon.arrays import Bytes, Cloud, freeze
-from rotrecon.formats.depth_limits import check_depth
-from rotrecon.formats.source import SourceFile
+from rotrecon.scene.formats.depth_limits import check_depth
+from rotrecon.scene.formats.source import SourceFile
 
 
 @dataclass(frozen=True, eq=False)

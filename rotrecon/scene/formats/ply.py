@@ -9,8 +9,8 @@ from numpy.typing import NDArray
 from plyfile import PlyData  # pyright: ignore[reportMissingTypeStubs]
 
 from rotrecon.arrays import Bytes
-from rotrecon.formats.cloud import RawCloud, make_cloud
-from rotrecon.formats.source import SourceFile
+from rotrecon.scene.formats.cloud import RawCloud, make_cloud
+from rotrecon.scene.formats.source import SourceFile
 
 _END_OF_HEADER = re.compile(rb"^end_header\r?\n", re.MULTILINE)
 _ELEMENT = re.compile(rb"^element\s+(\w+)\s+(\d+)\s*$", re.MULTILINE)

@@ -8,19 +8,19 @@ import numpy as np
 
 from rotrecon.arrays import Bytes, Cloud, Floats
 from rotrecon.camera import PinholeCamera
-from rotrecon.formats.cloud import RawCloud
-from rotrecon.formats.cloud_file import CLOUD_ENDINGS, read_cloud
-from rotrecon.formats.depth import read_depth
-from rotrecon.formats.image import read_image
-from rotrecon.formats.rosbag import read_bag
-from rotrecon.formats.source import SourceFile
 from rotrecon.frame import Capture, Frame
-from rotrecon.intrinsics import Intrinsics, recover_intrinsics
-from rotrecon.lens import pinhole
-from rotrecon.organise import RAY_TOLERANCE_PX, distance_from_rays_px, shade, z_buffer
-from rotrecon.scene import check_size, read_scene
-from rotrecon.scene_rules import camera_matrix_problem
-from rotrecon.scene_writing import SceneRecord, write_scene
+from rotrecon.scene.formats.cloud import RawCloud
+from rotrecon.scene.formats.cloud_file import CLOUD_ENDINGS, read_cloud
+from rotrecon.scene.formats.depth import read_depth
+from rotrecon.scene.formats.image import read_image
+from rotrecon.scene.formats.rosbag import read_bag
+from rotrecon.scene.formats.source import SourceFile
+from rotrecon.scene.intrinsics import Intrinsics, recover_intrinsics
+from rotrecon.scene.lens import pinhole
+from rotrecon.scene.organise import RAY_TOLERANCE_PX, distance_from_rays_px, shade, z_buffer
+from rotrecon.scene.reading import check_size, read_scene
+from rotrecon.scene.rules import camera_matrix_problem
+from rotrecon.scene.writing import SceneRecord, write_scene
 
 STATED_TOLERANCE_PX = 0.5
 """How far a camera_info may put the points from their pixels: the camera that made the cloud does so exactly."""

@@ -8,9 +8,9 @@ import numpy as np
 from rotrecon.arrays import Floats
 from rotrecon.camera import is_rigid
 from rotrecon.errors import SceneError
-from rotrecon.formats.source import MAX_PIXELS
-from rotrecon.lens import COEFFICIENT_COUNTS
-from rotrecon.scene_schema import EXAMPLES, CameraTable, FrameTable, SceneTable, ViewTable, WorkspaceTable
+from rotrecon.scene.formats.source import MAX_PIXELS
+from rotrecon.scene.lens import COEFFICIENT_COUNTS
+from rotrecon.scene.schema import EXAMPLES, CameraTable, FrameTable, SceneTable, ViewTable, WorkspaceTable
 
 FOCAL_LENGTHS_PER_SIDE = (0.05, 1000.0)
 """Focal lengths in larger sides of the picture, from beyond any fisheye to beyond any telescope: a focal length in

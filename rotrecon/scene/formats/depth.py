@@ -3,10 +3,10 @@
 import numpy as np
 
 from rotrecon.arrays import Cloud
-from rotrecon.formats.depth_limits import check_depth
-from rotrecon.formats.image import read_raw_image
-from rotrecon.formats.npz import read_array
-from rotrecon.formats.source import SourceFile
+from rotrecon.scene.formats.depth_limits import check_depth
+from rotrecon.scene.formats.image import read_raw_image
+from rotrecon.scene.formats.npz import read_array
+from rotrecon.scene.formats.source import SourceFile
 
 _PNG_INVALID = (0, 65535)
 

@@ -3,7 +3,7 @@
 import numpy as np
 
 from rotrecon.arrays import Cloud
-from rotrecon.formats.source import SourceFile
+from rotrecon.scene.formats.source import SourceFile
 
 FARTHEST_MEDIAN_M = 100.0
 """Far beyond any arm's camera, near beyond the first depth map in millimetres that is taken for metres."""

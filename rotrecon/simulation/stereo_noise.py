@@ -6,7 +6,7 @@ import cv2
 import numpy as np
 
 from rotrecon.arrays import Bools, Floats
-from rotrecon.rendering import RenderedView
+from rotrecon.simulation.rendering import RenderedView
 
 
 @dataclass(frozen=True)

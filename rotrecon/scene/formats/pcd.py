@@ -9,8 +9,8 @@ from numpy.typing import NDArray
 from pypcd4.pypcd4 import Encoding, MetaData, PointCloud
 
 from rotrecon.arrays import Bytes
-from rotrecon.formats.cloud import RawCloud, make_cloud, unpack_rgb
-from rotrecon.formats.source import SourceFile
+from rotrecon.scene.formats.cloud import RawCloud, make_cloud, unpack_rgb
+from rotrecon.scene.formats.source import SourceFile
 
 _END_OF_HEADER = re.compile(rb"^DATA[ \t]+\w+[ \t]*\r?\n", re.MULTILINE)
 

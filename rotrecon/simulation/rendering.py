@@ -8,8 +8,8 @@ from numpy.typing import NDArray
 
 from rotrecon.arrays import Bools, Bytes, Floats, freeze
 from rotrecon.camera import PinholeCamera, inverse, rotate
-from rotrecon.raycast import Plane, Shape, first_hit, outward_normals
-from rotrecon.texture import GAMMA, Material
+from rotrecon.simulation.raycast import Plane, Shape, first_hit, outward_normals
+from rotrecon.simulation.texture import GAMMA, Material
 
 AMBIENT = 0.45
 """Share of the light that comes from everywhere: shadows in a lit room stay readable."""

@@ -8,7 +8,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from rotrecon.arrays import Bytes
-from rotrecon.formats.source import SourceFile
+from rotrecon.scene.formats.source import SourceFile
 
 _PNG_SIGNATURE = b"\x89PNG\r\n\x1a\n"
 _JPEG_SIGNATURE = b"\xff\xd8"

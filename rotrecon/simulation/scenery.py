@@ -7,9 +7,9 @@ import numpy as np
 from rotrecon.arrays import Floats
 from rotrecon.camera import PinholeCamera, inverse, rotate, transform
 from rotrecon.primitives import basis_across
-from rotrecon.raycast import Plane
-from rotrecon.rendering import Body
-from rotrecon.texture import Football, Material, NoiseMaterial, Octave, linear_light
+from rotrecon.simulation.raycast import Plane
+from rotrecon.simulation.rendering import Body
+from rotrecon.simulation.texture import Football, Material, NoiseMaterial, Octave, linear_light
 
 FLAT_LATTICE = (256, 256)
 """Cells of a plane's noise: with grains of 5 mm it repeats after 1.3 m."""

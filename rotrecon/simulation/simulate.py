@@ -8,10 +8,10 @@ from rotrecon.arrays import Floats, freeze
 from rotrecon.camera import PinholeCamera
 from rotrecon.drawing import Drawing
 from rotrecon.frame import Frame, StereoNoise
-from rotrecon.ideal_drawing import ideal_drawing, outline_px
 from rotrecon.primitives import Frustum, Primitive, Sphere, basis_across
-from rotrecon.rendering import Body, RenderedView, World, render
-from rotrecon.scenery import (
+from rotrecon.simulation.ideal_drawing import ideal_drawing, outline_px
+from rotrecon.simulation.rendering import Body, RenderedView, World, render
+from rotrecon.simulation.scenery import (
     MaterialMaker,
     concrete,
     earth,
@@ -22,7 +22,7 @@ from rotrecon.scenery import (
     weathered_cable,
     wood,
 )
-from rotrecon.stereo_noise import StereoErrors, stereo_depth
+from rotrecon.simulation.stereo_noise import StereoErrors, stereo_depth
 
 DEFAULT_CAMERA = PinholeCamera(640, 480, np.array([[600.0, 0, 319.5], [0, 600.0, 239.5], [0, 0, 1]]))
 DEFAULT_NOISE = StereoErrors()

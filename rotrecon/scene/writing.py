@@ -13,15 +13,15 @@ import numpy as np
 import tomli_w
 
 from rotrecon.errors import SceneError
-from rotrecon.formats.depth_limits import check_depth
-from rotrecon.formats.image import encode_png
-from rotrecon.formats.npz import encode_npz
-from rotrecon.formats.source import SourceFile
 from rotrecon.frame import DepthNoise, Frame, StereoNoise
-from rotrecon.lens import pinhole
-from rotrecon.organise import RAY_TOLERANCE_PX, distance_from_rays_px
-from rotrecon.scene_rules import check_scene
-from rotrecon.scene_schema import FORMAT, SCENE_FILE, convert_scene
+from rotrecon.scene.formats.depth_limits import check_depth
+from rotrecon.scene.formats.image import encode_png
+from rotrecon.scene.formats.npz import encode_npz
+from rotrecon.scene.formats.source import SourceFile
+from rotrecon.scene.lens import pinhole
+from rotrecon.scene.organise import RAY_TOLERANCE_PX, distance_from_rays_px
+from rotrecon.scene.rules import check_scene
+from rotrecon.scene.schema import FORMAT, SCENE_FILE, convert_scene
 from rotrecon.workspace import Workspace
 
 _NOTHING: Mapping[str, bytes] = MappingProxyType({})

@@ -6,10 +6,10 @@ from typing import Any
 
 import numpy as np
 
-from rotrecon.ideal_drawing import as_arguments
 from rotrecon.primitives import Frustum
-from rotrecon.scene_writing import SceneRecord, write_scene
-from rotrecon.simulate import Simulated
+from rotrecon.scene.writing import SceneRecord, write_scene
+from rotrecon.simulation.ideal_drawing import as_arguments
+from rotrecon.simulation.simulate import Simulated
 
 TRUTH_FILE = "truth.json"
 

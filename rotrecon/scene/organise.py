@@ -5,7 +5,7 @@ from numpy.typing import NDArray
 
 from rotrecon.arrays import Bytes, Cloud
 from rotrecon.camera import PinholeCamera
-from rotrecon.lens import Lens, pixel_grid
+from rotrecon.scene.lens import Lens, pixel_grid
 
 RAY_TOLERANCE_PX = 3.0
 """How far points may lie from the rays of their own pixels, in the median: rectification moves them by 1 or 2."""

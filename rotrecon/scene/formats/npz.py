@@ -9,8 +9,8 @@ import numpy as np
 from numpy.lib import format as npy
 from numpy.typing import NDArray
 
-from rotrecon.formats.cloud import RawCloud, make_cloud
-from rotrecon.formats.source import SourceFile
+from rotrecon.scene.formats.cloud import RawCloud, make_cloud
+from rotrecon.scene.formats.source import SourceFile
 
 
 def read_array(source: SourceFile, name: str) -> NDArray[Any]:

@@ -2,11 +2,11 @@
 
 from collections.abc import Callable
 
-from rotrecon.formats.cloud import RawCloud
-from rotrecon.formats.npz import read_npz_cloud
-from rotrecon.formats.pcd import read_pcd
-from rotrecon.formats.ply import read_ply
-from rotrecon.formats.source import SourceFile
+from rotrecon.scene.formats.cloud import RawCloud
+from rotrecon.scene.formats.npz import read_npz_cloud
+from rotrecon.scene.formats.pcd import read_pcd
+from rotrecon.scene.formats.ply import read_ply
+from rotrecon.scene.formats.source import SourceFile
 
 _READERS: dict[str, Callable[[SourceFile], RawCloud]] = {
     ".npz": read_npz_cloud,

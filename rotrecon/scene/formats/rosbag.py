@@ -12,8 +12,8 @@ from rosbags.typesys import Stores, get_typestore
 
 from rotrecon.arrays import Floats
 from rotrecon.errors import SceneError
-from rotrecon.formats.cloud import RawCloud, make_cloud, unpack_rgb
-from rotrecon.formats.source import SourceFile
+from rotrecon.scene.formats.cloud import RawCloud, make_cloud, unpack_rgb
+from rotrecon.scene.formats.source import SourceFile
 
 _CLOUD = "sensor_msgs/msg/PointCloud2"
 _CAMERA = "sensor_msgs/msg/CameraInfo"

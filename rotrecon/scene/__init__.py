@@ -1,0 +1,1 @@
+"""The scene folder: read, validated, written, and made of foreign recordings."""

@@ -1,0 +1,87 @@
+"""Make the README's pictures again: the console on the recorded tin, driven by a real browser."""
+
+import sys
+from io import BytesIO
+from pathlib import Path
+
+import cv2
+import imageio.v3 as imageio
+import numpy as np
+from playwright.sync_api import Page, sync_playwright
+
+from app.console import Console
+from app.drawing_text import parse_area, parse_axis
+from rotrecon.drawing import Drawing
+from rotrecon.frame import Frame
+from rotrecon.overlay import blend, depth_colors, depth_range_m, outlines, with_outlines, with_segmentation
+from rotrecon.reconstruct import reconstruct
+from rotrecon.scene.reading import read_scene
+from rotrecon.settings import Settings
+from tests.browser.operator import CHROMIUM_ARGS, Operator, chromium
+from tests.recordings import DATA
+
+PICTURES = Path(__file__).parents[1] / "docs" / "pictures"
+AREA, AXIS = "270,50 380,232", "325,75 325,222"
+CROP = np.s_[20:260, 180:470]
+
+
+def main() -> None:
+    """Write every picture; needs the recording of the tin and Chromium."""
+    capture = read_scene(DATA / "tin")
+    frame = capture.frame()
+    assert isinstance(frame, Frame)
+    PICTURES.mkdir(parents=True, exist_ok=True)
+    write_figures(frame)
+    console = Console(frame, capture.name, Settings(), port=0, notes=capture.notes)
+    console.start()
+    try:
+        with sync_playwright() as playwright:
+            browser = playwright.chromium.launch(executable_path=chromium(), args=CHROMIUM_ARGS)
+            page = browser.new_page(viewport={"width": 1280, "height": 720})
+            operator = Operator(page, console)
+            draw(operator)
+            save(page, "camera-view.jpg")
+            page.keyboard.press("v")
+            operator.settle()
+            operator.frames(10)
+            save(page, "3d-view.jpg")
+    finally:
+        console.stop()
+
+
+def draw(operator: Operator) -> None:
+    """What an operator does: an area by dragging, the axis by dragging with shift."""
+    corners = parse_area(AREA).vertices_px
+    axis = parse_axis(AXIS)
+    operator.drag(corners[0], corners[2])
+    operator.settle()
+    operator.drag(axis.start_px, axis.end_px, shift=True)
+    operator.settle()
+    operator.frames(10)
+
+
+def save(page: Page, name: str) -> None:
+    """The page as a JPEG that a README can carry."""
+    write(name, imageio.imread(BytesIO(page.screenshot()))[..., :3])
+
+
+def write_figures(frame: Frame) -> None:
+    """Depth over the frame, the segmentation, and the re-projected solid, side by side."""
+    result = reconstruct(frame, Drawing(parse_area(AREA), parse_axis(AXIS)), Settings())
+    colors = depth_colors(frame.depth_m, depth_range_m(frame.depth_m))
+    figures = [
+        blend(frame.image, colors, np.isfinite(frame.depth_m), 0.7),
+        with_segmentation(frame.image, result, "close"),
+        with_segmentation(frame.image, result),
+        with_outlines(frame.image, outlines(result)),
+    ]
+    write("figures.jpg", np.hstack([figure[CROP] for figure in figures]))
+
+
+def write(name: str, image: np.ndarray) -> None:
+    """Write an RGB image (H, W, 3)."""
+    cv2.imwrite(str(PICTURES / name), image[..., ::-1], [cv2.IMWRITE_JPEG_QUALITY, 82])
+
+
+if __name__ == "__main__":
+    sys.exit(main())
