@@ -1,4 +1,4 @@
-"""The charts: radius along the axis as a uPlot, and one section in its own plane as a drawing."""
+"""The chart of radii along the axis."""
 
 from typing import Any
 
@@ -11,14 +11,6 @@ from rotrecon.reconstruct import Reconstruction
 
 USED, ODD, EXCLUDED, PROFILE, LIT = "#3c93d0", "#d55e00", "#8a8a8a", "#009e73", "#cc79a7"
 """Okabe and Ito's colours, which the colour-blind tell apart, as light and dark backgrounds allow."""
-STATE_TEXT = {
-    SectionState.USED: "used",
-    SectionState.EMPTY: "dropped: no pixel segmented",
-    SectionState.TOO_FEW_PIXELS: "dropped: too few pixels",
-    SectionState.COLLINEAR: "dropped: its points are on a line",
-    SectionState.EXCLUDED: "excluded by hand",
-    SectionState.ODD_RADIUS: "dropped: odd radius",
-}
 CHART_HEIGHT_PX = 132
 
 
@@ -73,53 +65,3 @@ def radius_scales(chart: tuple[Floats, ...]) -> dict[str, Any]:
     low, high = np.percentile(radii, [2, 98])
     margin = max(0.6 * (high - low), 0.1 * high, 1.0)
     return {"x": {"time": False}, "y": {"range": (max(0.0, float(low - margin)), float(high + margin))}}
-
-
-def section_text(result: Reconstruction | None, section: int) -> str:
-    """One section in words."""
-    count = section_count(result)
-    if result is None or result.second_cut is None or section >= count:
-        return "No sections yet."
-    state = result.fit.section_state if isinstance(result.fit, Fit) else result.second_cut.circles.state
-    radius_mm = 1000 * float(result.second_cut.circles.radius_m[section])
-    radius = f", radius {radius_mm:.1f} mm" if np.isfinite(radius_mm) else ""
-    return f"Section {section + 1} of {count}{radius}, {STATE_TEXT[SectionState(state[section])]}"
-
-
-def section_svg(result: Reconstruction | None, section: int) -> str:
-    """One section in its own plane: its points, the circle, and the points S, C and F it goes through."""
-    if result is None or result.sections is None or result.second_cut is None or section >= section_count(result):
-        return ""
-    sections, circles = result.sections, result.second_cut.circles
-
-    def in_plane_mm(points_m: Floats) -> Floats:
-        offset = points_m - sections.axis.point_m
-        return 1000 * np.stack([offset @ sections.across, -(offset @ sections.toward_camera)], axis=-1)
-
-    points = 1000 * sections.in_plane(section) * [1, -1]
-    base, center = in_plane_mm(circles.points_m[section]), in_plane_mm(circles.center_m[section])
-    radius = 1000 * float(circles.radius_m[section])
-    if len(points) == 0:
-        return ""
-    low, high = points.min(axis=0), points.max(axis=0)
-    dot = max(float((high - low).max()), 1.0) / 110
-    x, y = low - np.array([6, 12]) * dot
-    width, height = high - low + np.array([12, 18]) * dot
-    shapes = [_circle(u, v, dot, f'fill="{USED}" fill-opacity="0.75"') for u, v in points[:: len(points) // 400 + 1]]
-    if np.isfinite(radius):
-        shapes.append(
-            _circle(center[0], center[1], radius, f'fill="none" stroke="{PROFILE}" stroke-width="{dot * 0.8:.3f}"')
-        )
-        shapes.append(_circle(center[0], center[1], dot, f'fill="{PROFILE}"'))
-    for name, (u, v) in zip("SCF", base, strict=True):
-        if np.isfinite(u):
-            shapes.append(_circle(u, v, dot * 1.8, f'fill="{LIT}"'))
-            shapes.append(
-                f'<text x="{u:.3f}" y="{v - 2.8 * dot:.3f}" font-size="{7 * dot:.3f}" text-anchor="middle" '
-                f'fill="currentColor">{name}</text>'
-            )
-    return f'<svg class="rr-section" viewBox="{x:.3f} {y:.3f} {width:.3f} {height:.3f}">{"".join(shapes)}</svg>'
-
-
-def _circle(u: float, v: float, radius: float, style: str) -> str:
-    return f'<circle cx="{u:.3f}" cy="{v:.3f}" r="{radius:.3f}" {style}/>'

@@ -103,7 +103,9 @@ class Console:
             dark_mode=True, show_logo=False, show_share_button=False, brand_color=BRAND_COLOR
         )
         self.panels = Panels(self.server, self._name, self._notes, self._post_from)
-        self._scene = SceneView(self.server, self.frame, self._pictures.television(None, "picture"), self._cloud_points)
+        self._scene = SceneView(
+            self.server, self.frame, self._pictures.television(None, "picture"), self._cloud_points, self._post_from
+        )
         self.panels.show(self.session, measuring=False)
         self._running = asyncio.run_coroutine_threadsafe(self._run(), self._loop)
         self.server.on_client_connect(self._page_opened)

@@ -7,7 +7,7 @@ from typing import Literal, get_args
 from app.object_drawing import Pixel
 
 ViewName = Literal["camera", "3D"]
-LayerName = Literal["segmentation", "depth map", "model", "picture"]
+LayerName = Literal["segmentation", "close pixels", "accepted pixels", "depth map", "model", "picture"]
 VIEWS: tuple[ViewName, ...] = get_args(ViewName)
 LAYERS: tuple[LayerName, ...] = get_args(LayerName)
 ZOOM_STEP = 1.5
@@ -65,6 +65,14 @@ class SectionChosen:
 
 
 @dataclass(frozen=True)
+class SectionPointed:
+    """A place on the object was clicked, to see the section there: a sight line in base coordinates."""
+
+    origin_m: tuple[float, float, float]
+    direction: tuple[float, float, float]
+
+
+@dataclass(frozen=True)
 class SectionStepped:
     by: int
 
@@ -75,7 +83,15 @@ class DarkChosen:
 
 
 PageEvent = (
-    ViewChosen | OpacityChosen | LayerChosen | Zoomed | PointTouched | SectionChosen | SectionStepped | DarkChosen
+    ViewChosen
+    | OpacityChosen
+    | LayerChosen
+    | Zoomed
+    | PointTouched
+    | SectionChosen
+    | SectionPointed
+    | SectionStepped
+    | DarkChosen
 )
 
 

@@ -14,13 +14,12 @@ from app.charts import (
     radius_chart,
     radius_scales,
     section_count,
-    section_svg,
-    section_text,
 )
 from app.events import Event, SectionToggled
 from app.page import LAYERS, DarkChosen, LayerChosen, OpacityChosen, PageEvent, PageState, SectionChosen
 from app.panels import Panels
 from app.pictures import Pictures
+from app.section_drawing import section_svg, section_text
 from rotrecon.overlay import LIGHT_BLUE, NAVY, RED, YELLOW
 from rotrecon.reconstruct import Reconstruction
 

@@ -9,7 +9,15 @@ from app.camera_view import CameraView
 from app.charts import section_count
 from app.events import Event, HandleMoved, PointerDragged, VertexClicked
 from app.object_drawing import Part, Pixel
-from app.page import PageEvent, PageState, PointTouched, page_step, section_shown
+from app.page import (
+    PageEvent,
+    PageState,
+    PointTouched,
+    SectionChosen,
+    SectionPointed,
+    page_step,
+    section_shown,
+)
 from app.page_panels import PagePanels
 from app.panels import Panels
 from app.pictures import Pictures
@@ -48,12 +56,25 @@ class PageView:
         self._world_pose: tuple[np.ndarray, ...] | None = None
         picture = self._camera_view.picture
         picture.on_click(self._clicked)
+        picture.on_click(modifier="cmd/ctrl")(self._pointed)
         picture.on_drag("left")(self._dragged)
         picture.on_drag("left", modifier="shift")(self._dragged)
 
     def take(self, event: PageEvent, session: Session) -> None:
         """Follow a choice made on this page."""
-        self.state = page_step(self.state, event, section_count(session.reconstruction))
+        result = session.reconstruction
+        if isinstance(event, SectionPointed):
+            section = self._section_under(event, result)
+            if section is None:
+                return
+            event = SectionChosen(section)
+        self.state = page_step(self.state, event, section_count(result))
+
+    def _section_under(self, pointed: SectionPointed, result: Reconstruction | None) -> int | None:
+        if result is None or result.sections is None:
+            return None
+        origin_m, direction = self._pixels.sight_line(pointed.origin_m, pointed.direction)
+        return result.sections.section_at(origin_m, direction)
 
     def show(self, session: Session) -> None:
         """Bring everything on this page up to date."""
@@ -116,6 +137,9 @@ class PageView:
         point = self._pixels.clicked(event)
         self._post(PointTouched(point))
         self._post(VertexClicked(point, self._camera_view.closing_reach_px(self.state)))
+
+    async def _pointed(self, event: SceneNodePointerEvent) -> None:
+        self._post(SectionPointed(event.ray_origin, event.ray_direction))
 
     async def _dragged(self, event: SceneNodeDragEvent) -> None:
         start, end = self._pixels.dragged(event)

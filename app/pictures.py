@@ -11,6 +11,7 @@ from rotrecon.arrays import Bytes
 from rotrecon.fitting import Fit
 from rotrecon.frame import Frame
 from rotrecon.overlay import (
+    Stage,
     blend,
     depth_colors,
     depth_range_m,
@@ -21,6 +22,8 @@ from rotrecon.overlay import (
 )
 from rotrecon.reconstruct import Reconstruction
 
+STAGES: dict[LayerName, Stage] = {"close pixels": "close", "accepted pixels": "accepted", "segmentation": "object"}
+"""The layers that are figure 3 a, b and c of the paper."""
 SECTION_COLOR = (204, 121, 167)
 PANEL_WIDTH_PX = 480
 """Width that pictures in a panel are sent with: that of the panel, on a screen of high density a little less."""
@@ -56,8 +59,8 @@ class Pictures:
         image = self.frame.image
         if layer == "depth map":
             image = self.depth_layer
-        elif layer == "segmentation" and result is not None:
-            image = with_segmentation(image, result)
+        elif layer in STAGES and result is not None:
+            image = with_segmentation(image, result, STAGES[layer])
         elif layer == "model" and result is not None and isinstance(result.fit, Fit):
             image = with_outlines(with_segmentation(image, result, opacity=0.25), outlines(result))
         scale = min(1.0, PANEL_WIDTH_PX / image.shape[1])

@@ -4,8 +4,11 @@ import numpy as np
 from viser import SceneNodeDragEvent, SceneNodePointerEvent
 
 from app.object_drawing import Pixel
-from rotrecon.camera import inverse, transform
+from rotrecon.arrays import Floats
+from rotrecon.camera import inverse, rotate, transform
 from rotrecon.frame import Frame
+
+Triple = tuple[float, float, float]
 
 
 class PixelFinder:
@@ -15,7 +18,7 @@ class PixelFinder:
         self._camera = frame.camera
         self._T_camera_base = inverse(frame.T_base_camera)
 
-    def pixel(self, point_m: tuple[float, float, float]) -> Pixel:
+    def pixel(self, point_m: Triple) -> Pixel:
         """Pixel of a point in base coordinates."""
         u, v = self._camera.project(transform(self._T_camera_base, np.asarray(point_m)))
         return (float(u), float(v))
@@ -23,6 +26,11 @@ class PixelFinder:
     def clicked(self, event: SceneNodePointerEvent) -> Pixel:
         """Pixel that was clicked."""
         return self.pixel(tuple(np.add(event.ray_origin, event.ray_direction)))
+
+    def sight_line(self, origin_m: Triple, direction: Triple) -> tuple[Floats, Floats]:
+        """Origin and direction of a sight line in camera coordinates, given in base coordinates."""
+        T = self._T_camera_base
+        return transform(T, np.asarray(origin_m)), rotate(T, np.asarray(direction))
 
     def dragged(self, event: SceneNodeDragEvent) -> tuple[Pixel, Pixel]:
         """Pixels where a drag started and where it is."""

@@ -2,9 +2,11 @@
 
 import numpy as np
 from numpy.typing import NDArray
-from viser import ClientHandle, ViserServer
+from viser import ClientHandle, SceneNodePointerEvent, ViserServer
 from viser import transforms as tf
 
+from app.page import SectionPointed
+from app.panels import Post
 from rotrecon.arrays import Bytes, Floats, Indices
 from rotrecon.axis import SpaceSections
 from rotrecon.camera import transform
@@ -26,8 +28,8 @@ EDGES = [(a, b) for a in range(8) for b in range(a + 1, 8) if np.abs(CORNERS[a] 
 class SceneView:
     """Nodes under `/world`, named the same for as long as the program runs."""
 
-    def __init__(self, server: ViserServer, frame: Frame, picture: Bytes, cloud_points: int) -> None:
-        self._scene, self._frame = server.scene, frame
+    def __init__(self, server: ViserServer, frame: Frame, picture: Bytes, cloud_points: int, post: Post) -> None:
+        self._scene, self._frame, self._post = server.scene, frame, post
         self._shown: Reconstruction | None = None
         self._valid = np.isfinite(frame.depth_m).ravel()
         self._depth_m = float(np.median(frame.depth_m.ravel()[self._valid])) if self._valid.any() else 1.0
@@ -107,7 +109,7 @@ class SceneView:
         return transform(self._frame.T_base_camera, self._frame.points_m.reshape(-1, 3)[pixel])
 
     def _section_points(self, sections: SpaceSections, section: int) -> Floats:
-        points_m = sections.points_m[sections.start[section] : sections.start[section + 1]]
+        points_m = sections.points_in(section)
         return transform(self._frame.T_base_camera, points_m) if len(points_m) else np.zeros((1, 3))
 
     def _point_size_m(self) -> float:
@@ -148,7 +150,7 @@ class SceneView:
 
     def _show_solid(self, solid: Primitive | None) -> None:
         mesh = None if solid is None else as_mesh(solid)
-        self._scene.add_mesh_simple(
+        node = self._scene.add_mesh_simple(
             "/world/solid",
             np.zeros((3, 3)) if mesh is None else np.asarray(mesh.vertices),
             np.array([[0, 1, 2]]) if mesh is None else np.asarray(mesh.faces),
@@ -159,6 +161,7 @@ class SceneView:
             receive_shadow=False,
             visible=mesh is not None,
         )
+        node.on_click(self._clicked)
         ends = np.zeros((1, 2, 3))
         if solid is not None:
             overhang = 1.3 * np.array(solid.ends)[:, None]
@@ -166,6 +169,9 @@ class SceneView:
         self._scene.add_line_segments(
             "/world/axis", ends, AXIS_COLOR, thickness=3.0, thickness_units="screen", visible=solid is not None
         )
+
+    async def _clicked(self, event: SceneNodePointerEvent) -> None:
+        self._post(event.client_id, SectionPointed(event.ray_origin, event.ray_direction))
 
     def _show_tool(self, tool: ToolProposal | NoTool | None, solid: Primitive | None) -> None:
         length_m = 0.15 * self._depth_m

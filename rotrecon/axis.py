@@ -91,11 +91,6 @@ class SpaceSections:
     def __post_init__(self) -> None:
         freeze(self)
 
-    @property
-    def points_m(self) -> Cloud:
-        """(M, 3) camera coordinates; copied from the cloud."""
-        return self._points(self.pixel)
-
     def _points(self, pixel: Indices) -> Cloud:
         return self.cloud_m.reshape(-1, 3)[pixel]
 
@@ -114,10 +109,27 @@ class SpaceSections:
         """Points (n, 3) of the chosen (S,) sections, camera coordinates."""
         return self._points(self.pixel[np.repeat(sections, np.diff(self.start))])
 
-    def in_plane(self, section: int) -> Floats:
-        """Points (n, 2) of one section in its own plane, metres from the axis: across, and toward the camera."""
-        points = self._points(self.pixel[self.start[section] : self.start[section + 1]]) - self.axis.point_m
-        return np.stack([points @ self.across, points @ self.toward_camera], axis=1)
+    def points_in(self, section: int) -> Cloud:
+        """Points (n, 3) of one section, camera coordinates."""
+        return self._points(self.pixel[self.start[section] : self.start[section + 1]])
+
+    def in_plane(self, points_m: Cloud | Floats) -> Floats:
+        """Points (..., 2) in a section's own plane, metres from the axis: across, and toward the camera."""
+        offset = points_m - self.axis.point_m
+        return np.stack([offset @ self.across, offset @ self.toward_camera], axis=-1)
+
+    def residuals_m(self, section: int, circles: SectionCircles) -> Floats:
+        """How far the points (n,) of one section lie outside its circle, in its own plane."""
+        to_center = self.in_plane(self.points_in(section)) - self.in_plane(circles.center_m[section])
+        return np.linalg.norm(to_center, axis=-1) - circles.radius_m[section]
+
+    def section_at(self, origin_m: Floats, direction: Floats) -> int | None:
+        """The section of the point that lies nearest to a sight line, camera coordinates (3,); None without points."""
+        if len(self.pixel) == 0:
+            return None
+        across = np.cross(self._points(self.pixel) - origin_m, direction)
+        nearest = int(np.argmin(np.einsum("ij,ij->i", across, across)))
+        return int(np.searchsorted(self.start, nearest, side="right")) - 1
 
 
 def span_along(axis: Axis, circles: SectionCircles) -> tuple[float, float]:

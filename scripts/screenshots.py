@@ -17,7 +17,7 @@ from rotrecon.overlay import blend, depth_colors, depth_range_m, outlines, with_
 from rotrecon.reconstruct import reconstruct
 from rotrecon.scene.reading import read_scene
 from rotrecon.settings import Settings
-from tests.browser.operator import CHROMIUM_ARGS, Operator, chromium
+from tests.browser.operator import CHROMIUM, CHROMIUM_ARGS, Operator
 from tests.recordings import DATA
 
 PICTURES = Path(__file__).parents[1] / "docs" / "pictures"
@@ -36,7 +36,7 @@ def main() -> None:
     console.start()
     try:
         with sync_playwright() as playwright:
-            browser = playwright.chromium.launch(executable_path=chromium(), args=CHROMIUM_ARGS)
+            browser = playwright.chromium.launch(executable_path=CHROMIUM, args=CHROMIUM_ARGS)
             page = browser.new_page(viewport={"width": 1280, "height": 720})
             operator = Operator(page, console)
             draw(operator)

@@ -75,12 +75,12 @@ def test_sections_hold_the_points_between_their_planes_in_order(seed):
     points = rng.normal([0, 0, 1], 0.1, (300, 3)).astype(np.float32)
     axis = Axis(np.array([0.01, 0, 1.0]), np.array([1.0, 0, 0]))
     sections = cut_in_space(points, np.arange(300, dtype=np.int32), axis, (-0.1, 0.1), 10)
-    along = axis.along(sections.points_m)
+    along = axis.along(points[sections.pixel])
     for section in range(10):
         mine = slice(sections.start[section], sections.start[section + 1])
         low = -0.1 + 0.02 * section
         assert ((along[mine] >= low - 1e-6) & (along[mine] <= low + 0.02 + 1e-6)).all()
-        assert (np.diff(sections.in_plane(section)[:, 0]) >= -1e-6).all()
+        assert (np.diff(sections.in_plane(sections.points_in(section))[:, 0]) >= -1e-6).all()
     base, _ = sections.base_points()
     assert np.nanmax(np.abs(np.diff(axis.along(base), axis=1))) < 1e-12
 
@@ -91,3 +91,26 @@ def test_no_point_between_the_ends_makes_empty_sections():
     points, count = sections.base_points()
     assert count.tolist() == [0, 0, 0, 0]
     assert np.isnan(points).all()
+
+
+@given(st.integers(0, 2**31))
+def test_a_sight_line_through_a_point_finds_its_section(seed):
+    rng = np.random.default_rng(seed)
+    points = rng.normal([0, 0, 1], 0.1, (300, 3)).astype(np.float32)
+    axis = Axis(np.array([0.01, 0, 1.0]), np.array([1.0, 0, 0]))
+    sections = cut_in_space(points, np.arange(300, dtype=np.int32), axis, (-0.1, 0.1), 10)
+    chosen = int(rng.integers(10))
+    if len(sections.points_in(chosen)) > 0:
+        assert sections.section_at(np.zeros(3), sections.points_in(chosen)[0].astype(float)) == chosen
+
+
+def test_residuals_are_distances_from_the_circle_in_its_plane():
+    axis = Axis(np.array([0, 0, 1.0]), np.array([0, 1.0, 0]))
+    angle = np.linspace(0.2, 2.9, 20)
+    ring = np.stack([0.05 * np.cos(angle), 0.01 * np.sin(9 * angle), 1 - 0.05 * np.sin(angle)], axis=1)
+    ring[7] += [0, 0, -0.002]
+    sections = cut_in_space(ring.astype(np.float32), np.arange(20, dtype=np.int32), axis, (-0.02, 0.02), 1)
+    circles = replace(circles_at(np.array([[0, 0, 1.0]])), radius_m=np.array([0.05]))
+    residuals = np.sort(np.abs(sections.residuals_m(0, circles)))
+    assert residuals[:-1] == pytest.approx(0, abs=1e-6)
+    assert residuals[-1] == pytest.approx(0.002 * np.sin(angle[7]), rel=0.05)

@@ -2,6 +2,7 @@
 
 from collections.abc import Callable
 from io import BytesIO
+from shutil import which
 from time import monotonic
 
 import imageio.v3 as imageio
@@ -13,8 +14,11 @@ from app.console import Console, FromPage
 from app.events import Event
 from app.object_drawing import Pixel
 from app.page_view import PageView
+from rotrecon.arrays import Floats
+from rotrecon.camera import transform
 
-CHROMIUM = "/usr/bin/chromium"
+CHROMIUM = which("chromium") or which("chromium-browser") or "/usr/bin/chromium"
+"""Debian's name, then Ubuntu's."""
 CHROMIUM_ARGS = [
     "--no-sandbox",
     "--use-gl=angle",
@@ -71,9 +75,13 @@ class Operator:
 
     def frame_to_screen(self, u: float, v: float) -> tuple[float, float]:
         """Place on the page of a pixel of the frame, in the camera view."""
-        camera, frame = self.view.client.camera, self.console.frame
-        T_view_base = tf.SO3(camera.wxyz).as_matrix().T
-        ray = T_view_base @ frame.T_base_camera[:3, :3] @ frame.camera.unproject((u, v), 1.0)
+        frame = self.console.frame
+        return self.base_to_screen(transform(frame.T_base_camera, frame.camera.unproject((u, v), 1.0)))
+
+    def base_to_screen(self, point_m: Floats) -> tuple[float, float]:
+        """Place on the page of a point in base coordinates, in either view."""
+        camera = self.view.client.camera
+        ray = tf.SO3(camera.wxyz).as_matrix().T @ (point_m - camera.position)
         box = self.page.locator("canvas").first.bounding_box()
         assert box is not None
         focal = box["height"] / 2 / np.tan(camera.fov / 2)

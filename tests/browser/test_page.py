@@ -7,6 +7,7 @@ from playwright.sync_api import Browser, expect
 
 from app.console import Console, announcements
 from app.events import Event, PointerDragged, PolygonClosed, VertexClicked
+from rotrecon.overlay import section_pixels
 from rotrecon.settings import Settings
 from rotrecon.simulation.simulate import Simulated
 from tests.browser.conftest import VIEWPORT
@@ -74,6 +75,28 @@ def test_sections_are_stepped_and_excluded(operator: Operator, scene: Simulated)
     assert operator.console.session.shown.excluded_sections == {number - 1}
     operator.page.get_by_role("button", name="Put this section back").click()
     operator.until(lambda: not operator.console.session.shown.excluded_sections, "the section counts again")
+
+
+def test_a_click_on_the_object_lights_the_section_there(operator: Operator, scene: Simulated) -> None:
+    operator.send(*drawing_events(scene))
+    result = operator.console.session.reconstruction
+    assert result is not None
+    places = {section: section_pixels(result, section).mean(axis=0) for section in (10, 40)}
+    operator.page.keyboard.down("Control")
+    for section, (u, v) in places.items():
+        operator.click(round(u), round(v))
+        operator.until(lambda wanted=section: abs((operator.view.state.section or 0) - wanted) <= 2, "it is lit")
+    operator.page.keyboard.up("Control")
+    assert operator.console.session.vertices_px == (), "no corner of a polygon"
+    operator.page.keyboard.press("v")
+    operator.until(lambda: operator.view.state.view == "3D", "the 3D view is shown")
+    operator.settle()
+    before = operator.view.state.section
+    solid = result.solid
+    assert solid is not None
+    x, y = operator.base_to_screen(solid.center_m + 0.8 * solid.ends[0] * solid.direction)
+    operator.page.mouse.click(x, y)
+    operator.until(lambda: operator.view.state.section != before, "another section is lit")
 
 
 def test_two_pages_share_the_drawing_and_not_the_view(operator: Operator, browser: Browser, scene: Simulated) -> None:

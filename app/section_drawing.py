@@ -1,0 +1,82 @@
+"""One section in words, and drawn in its own plane."""
+
+import numpy as np
+
+from app.charts import LIT, ODD, PROFILE, USED, section_count
+from rotrecon.arrays import Floats
+from rotrecon.circles import SectionState
+from rotrecon.fitting import Fit
+from rotrecon.reconstruct import Reconstruction
+
+STATE_TEXT = {
+    SectionState.USED: "used",
+    SectionState.EMPTY: "dropped: no pixel segmented",
+    SectionState.TOO_FEW_PIXELS: "dropped: too few pixels",
+    SectionState.COLLINEAR: "dropped: its points are on a line",
+    SectionState.EXCLUDED: "excluded by hand",
+    SectionState.ODD_RADIUS: "dropped: odd radius",
+}
+MOST_DOTS = 300
+"""Points of a section that are drawn: more would lie on each other."""
+
+
+def section_text(result: Reconstruction | None, section: int) -> str:
+    """One section in words."""
+    count = section_count(result)
+    if result is None or result.second_cut is None or section >= count:
+        return "No sections yet."
+    state = result.fit.section_state if isinstance(result.fit, Fit) else result.second_cut.circles.state
+    radius_mm = 1000 * float(result.second_cut.circles.radius_m[section])
+    place = f"Section {section + 1} of {count}, {STATE_TEXT[SectionState(state[section])]}"
+    if not np.isfinite(radius_mm) or result.sections is None:
+        return place
+    residuals_mm = 1000 * result.sections.residuals_m(section, result.second_cut.circles)
+    off_mm = float(np.sqrt(np.mean(residuals_mm**2)))
+    return f"{place}: radius {radius_mm:.1f} mm, its {len(residuals_mm)} pixels {off_mm:.2f} mm off (RMS)"
+
+
+def section_svg(result: Reconstruction | None, section: int) -> str:
+    """One section in its own plane: its points, the circle through S, C and F, and how far the points lie off it."""
+    if result is None or result.sections is None or result.second_cut is None or section >= section_count(result):
+        return ""
+    sections, circles = result.sections, result.second_cut.circles
+    on_paper = np.array([1000.0, -1000.0])
+    points, base, center = (
+        on_paper * sections.in_plane(points_m)
+        for points_m in (sections.points_in(section), circles.points_m[section], circles.center_m[section])
+    )
+    if len(points) == 0:
+        return ""
+    low, high = points.min(axis=0), points.max(axis=0)
+    dot = max(float((high - low).max()), 1.0) / 110
+    corner, size = low - np.array([6, 12]) * dot, high - low + np.array([12, 18]) * dot
+    drawn = points[:: len(points) // MOST_DOTS + 1]
+    radius = 1000 * float(circles.radius_m[section])
+    shapes = _fitted_circle(center, radius, drawn, dot) if np.isfinite(radius) else []
+    shapes += [_circle(u, v, 0.8 * dot, f'fill="{USED}"') for u, v in drawn]
+    for name, (u, v) in zip("SCF", base, strict=True):
+        if np.isfinite(u):
+            shapes += [_circle(u, v, 1.8 * dot, f'fill="{LIT}"'), _label(name, u, v - 2.8 * dot, 7 * dot)]
+    box = " ".join(f"{value:.3f}" for value in (*corner, *size))
+    return f'<svg class="rr-section" viewBox="{box}">{"".join(shapes)}</svg>'
+
+
+def _fitted_circle(center: Floats, radius: float, points: Floats, dot: float) -> list[str]:
+    """The circle, its centre, and a line from it to each of the points (n, 2)."""
+    outward = points - center
+    feet = center + radius * outward / np.maximum(np.linalg.norm(outward, axis=1, keepdims=True), 1e-9)
+    lines = "".join(f"M{u:.3f} {v:.3f}L{x:.3f} {y:.3f}" for (u, v), (x, y) in zip(points, feet, strict=True))
+    return [
+        _circle(center[0], center[1], radius, f'fill="none" stroke="{PROFILE}" stroke-width="{0.8 * dot:.3f}"'),
+        _circle(center[0], center[1], dot, f'fill="{PROFILE}"'),
+        f'<path d="{lines}" stroke="{ODD}" stroke-width="{0.5 * dot:.3f}"/>',
+    ]
+
+
+def _circle(u: float, v: float, radius: float, style: str) -> str:
+    return f'<circle cx="{u:.3f}" cy="{v:.3f}" r="{radius:.3f}" {style}/>'
+
+
+def _label(text: str, u: float, v: float, size: float) -> str:
+    place = f'x="{u:.3f}" y="{v:.3f}" font-size="{size:.3f}"'
+    return f'<text {place} text-anchor="middle" fill="currentColor">{text}</text>'
