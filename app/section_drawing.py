@@ -32,7 +32,7 @@ def section_text(result: Reconstruction | None, section: int) -> str:
         return place
     residuals_mm = 1000 * result.sections.residuals_m(section, result.second_cut.circles)
     off_mm = float(np.sqrt(np.mean(residuals_mm**2)))
-    return f"{place}: radius {radius_mm:.1f} mm, its {len(residuals_mm)} pixels {off_mm:.2f} mm off (RMS)"
+    return f"{place}. Radius {radius_mm:.1f} mm; its {len(residuals_mm)} pixels lie {off_mm:.2f} mm off (RMS)."
 
 
 def section_svg(result: Reconstruction | None, section: int) -> str:
