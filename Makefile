@@ -2,12 +2,13 @@
 PYTHON ?= python3
 SCENE ?=
 BIN := .venv/bin
+APT := $(shell command -v sudo) apt-get
 CHECKED := rotrecon app tests scripts
 
 all: .venv/installed
 
 .venv/installed: pyproject.toml constraints.txt
-	$(PYTHON) -m venv .venv >/dev/null 2>&1 || (sudo=$$(command -v sudo); $$sudo apt-get update && $$sudo apt-get install -y python3-venv && $(PYTHON) -m venv .venv)
+	$(PYTHON) -m venv .venv >/dev/null 2>&1 || ($(APT) update && $(APT) install -y python3-venv && $(PYTHON) -m venv .venv)
 	$(BIN)/pip install --quiet --constraint constraints.txt --editable .
 	touch $@
 
@@ -15,8 +16,10 @@ all: .venv/installed
 	$(BIN)/pip install --quiet --constraint constraints.txt --editable '.[test]'
 	touch $@
 
+# libatomic1 is what the browser tests' driver needs; Ubuntu calls Chromium chromium-browser
 chromium:
-	@command -v chromium >/dev/null || (sudo=$$(command -v sudo); $$sudo apt-get update && $$sudo apt-get install -y chromium)
+	@(command -v chromium || command -v chromium-browser) >/dev/null && /sbin/ldconfig -p | grep -q libatomic.so.1 \
+	|| ($(APT) update && ($(APT) install -y chromium libatomic1 || $(APT) install -y chromium-browser libatomic1))
 
 run: .venv/installed
 	$(BIN)/rotrecon serve $(SCENE)

@@ -16,7 +16,7 @@ def least_squares_circles(circles: SectionCircles, sections: SpaceSections) -> S
     """
     used = circles.used
     section = np.repeat(np.arange(len(used)), np.diff(sections.start))
-    offset = sections.points_m - sections.axis.point_m
+    offset = sections.points_of(np.ones(len(used), dtype=np.bool_)) - sections.axis.point_m
     across, toward = sections.across, sections.toward_camera
     terms = np.stack([2 * offset @ across, 2 * offset @ toward, np.ones(len(offset))])
     squared = (terms[0] ** 2 + terms[1] ** 2) / 4
