@@ -102,7 +102,7 @@ def serve(
         typer.echo(f"rotrecon: {frame.reason}", err=True)
         raise typer.Exit(CANNOT)
     settings = Settings(tools=default_tools() if tools is None else read_tools(tools))
-    from app.console import serve as serve_console  # viser takes a second to import, which no other command needs
+    from app.serving import serve as serve_console  # viser takes a second to import, which no other command needs
 
     serve_console(frame, capture.name, settings, host, port, notes=capture.notes)
 

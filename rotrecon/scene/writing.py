@@ -1,6 +1,5 @@
 """Writes a scene folder: whole, or not at all."""
 
-import os
 import secrets
 import shutil
 from collections.abc import Mapping
@@ -13,6 +12,7 @@ import numpy as np
 import tomli_w
 
 from rotrecon.errors import SceneError
+from rotrecon.files import flush_folder, write_durably
 from rotrecon.frame import DepthNoise, Frame, StereoNoise
 from rotrecon.scene.formats.depth_limits import check_depth
 from rotrecon.scene.formats.image import encode_png
@@ -54,10 +54,10 @@ def write_scene(folder: Path, record: SceneRecord, beside: Mapping[str, bytes] =
         folder.parent.mkdir(parents=True, exist_ok=True)
         aside.mkdir()
         for name, content in {**files, **beside}.items():
-            _write_durably(aside / name, content)
-        _flush_folder(aside)
+            write_durably(aside / name, content)
+        flush_folder(aside)
         aside.rename(folder)
-        _flush_folder(folder.parent)
+        flush_folder(folder.parent)
     except OSError as failure:
         remedy = "free some space, or name a new folder where you may write"
         raise _refusal(folder, f"cannot be written ({failure.strerror})", remedy) from failure
@@ -121,19 +121,3 @@ def _workspace_table(workspace: Workspace) -> dict[str, Any]:
         "depth_m": None if workspace.depth_m is None else list(workspace.depth_m),
     }
     return {field: value for field, value in limits.items() if value is not None}
-
-
-def _write_durably(path: Path, content: bytes) -> None:
-    with path.open("xb") as file:
-        file.write(content)
-        file.flush()
-        os.fsync(file.fileno())
-
-
-def _flush_folder(folder: Path) -> None:
-    """Put the folder's own entries on disk; a renamed folder is otherwise lost with the power."""
-    handle = os.open(folder, os.O_RDONLY)
-    try:
-        os.fsync(handle)
-    finally:
-        os.close(handle)

@@ -5,8 +5,9 @@ import socket
 import numpy as np
 from playwright.sync_api import Browser, expect
 
-from app.console import Console, announcements
+from app.console import Console
 from app.events import Event, PointerDragged, PolygonClosed, VertexClicked
+from app.serving import announcements
 from rotrecon.overlay import section_pixels
 from rotrecon.settings import Settings
 from rotrecon.simulation.simulate import Simulated
