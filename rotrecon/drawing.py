@@ -110,14 +110,15 @@ def _pixels_on_grid(
     height, width = mask.shape
 
     def coordinate(axis: int) -> Indices:
-        on_axis = (origin_px[axis] + rows * along[axis]).astype(np.float32)
-        beside = (columns * across[axis]).astype(np.float32)
-        # not rint, which rounds halves to even and would take every other pixel twice
-        return np.floor(on_axis[:, None] + beside[None, :] + np.float32(0.5)).astype(np.int32)
+        # rounded by floor(x + 0.5), as rint rounds halves to even and would take every other pixel twice
+        place = (origin_px[axis] + rows * along[axis] + 0.5).astype(np.float32)[:, None]
+        place = place + (columns * across[axis]).astype(np.float32)
+        return np.floor(place, out=place).astype(np.int32)
 
     u, v = coordinate(0), coordinate(1)
     in_frame = (u >= 0) & (u < width) & (v >= 0) & (v < height)
-    pixel = v * np.int32(width) + u
+    pixel = np.multiply(v, width, out=v)
+    pixel += u
     pixel[~in_frame] = 0
     in_frame &= mask.ravel()[pixel] > 0
     pixel[~in_frame] = -1

@@ -58,12 +58,10 @@ def segment(depth_m: Cloud, usable: Bools, inside: Bools, settings: Settings) ->
     close, removed_in_run, means, sigmas = _remove_distant(depth_m, usable, settings)
     mean, sigma = means[-1], sigmas[-1]
     reach = np.maximum(settings.sigma_factor * sigma, settings.distance_floor_m).astype(np.float32)[:, None]
-    outlier = close & (np.abs(depth_m - mean.astype(np.float32)[:, None]) > reach)
+    outlier = close & ~_within(depth_m, mean.astype(np.float32)[:, None], reach)
     accepted = close & ~outlier
-    step_m = np.diff(depth_m, axis=1)
     linked = np.zeros_like(usable)
-    linked[:, 1:] = usable[:, 1:] & usable[:, :-1] & (np.abs(step_m, out=step_m) <= reach)
-    del step_m
+    linked[:, 1:] = usable[:, 1:] & usable[:, :-1] & _within(depth_m[:, 1:], depth_m[:, :-1], reach)
     forward = _scan(accepted, linked)
     backward = _scan_back(forward, linked)
     density, coverage = _line_shares(backward, usable, inside)
@@ -102,7 +100,13 @@ def _mean_and_sigma(depth_m: Cloud, members: Bools) -> tuple[Floats, Floats]:
     mean = np.where(members, depth_m, 0).sum(axis=1, dtype=np.float64) / count
     deviation = depth_m - mean.astype(np.float32)[:, None]
     np.copyto(deviation, 0, where=~members)
-    return mean, np.sqrt(np.einsum("sw,sw->s", deviation, deviation, dtype=np.float64) / count)
+    return mean, np.sqrt(np.square(deviation, out=deviation).sum(axis=1, dtype=np.float64) / count)
+
+
+def _within(depth_m: Cloud, reference_m: Cloud, reach_m: Cloud) -> Bools:
+    """Where (S, W) a depth lies no farther than `reach_m` (S, 1) from another."""
+    apart = depth_m - reference_m
+    return np.abs(apart, out=apart) <= reach_m
 
 
 def _scan(accepted: Bools, linked: Bools) -> Bools:
