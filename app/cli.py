@@ -136,11 +136,18 @@ def import_(
 ) -> None:
     """Make a scene folder from a foreign recording."""
     camera = None if intrinsics is None else Intrinsics(*_numbers("--intrinsics", intrinsics, ",", 4))
-    shape = None if size is None else tuple(int(number) for number in _numbers("--size", size, "x", 2))
+    shape = None if size is None else _size(size)
     capture = import_scene(source, out, ImportOptions(depth, depth_scale, camera, shape, topic, name))
     typer.echo(f"wrote {out}: {capture.name}")
     for note in capture.notes:
         typer.echo(f"  {note}")
+
+
+def _size(text: str) -> tuple[int, int]:
+    width, _, height = text.partition("x")
+    if not (width.isdecimal() and height.isdecimal()):
+        raise typer.BadParameter(f"--size {text} is not a size; write it as 640x480")
+    return (int(width), int(height))
 
 
 def _numbers(option: str, text: str, separator: str, count: int) -> list[float]:

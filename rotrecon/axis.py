@@ -9,6 +9,11 @@ from rotrecon.circles import SectionCircles
 from rotrecon.primitives import basis_across
 from rotrecon.settings import Settings
 
+ELONGATION = 2.0
+"""Least ratio of the two largest variances of centres that are drawn out along a line; a heap of them has about 1."""
+BELOW_ONE = 0.999
+"""Where the last point of a section stands, so that it does not count as the next section's first."""
+
 
 @dataclass(frozen=True, eq=False)
 class Axis:
@@ -25,6 +30,10 @@ class Axis:
     def along(self, points_m: Floats) -> Floats:
         """Signed distance (...) of points (..., 3) from `point_m` along the axis."""
         return (points_m - self.point_m) @ self.direction
+
+    def turn_to(self, other: "Axis") -> float:
+        """Angle between two axes, rad."""
+        return float(np.arccos(np.clip(self.direction @ other.direction, -1, 1)))
 
     def distance(self, points_m: Floats) -> Floats:
         """Distance (...) of points (..., 3) from the axis."""
@@ -64,7 +73,7 @@ def _line_through(centers_m: Floats) -> Axis | None:
     middle = centers_m.mean(axis=0)
     offset = centers_m - middle
     spread, vectors = np.linalg.eigh(offset.T @ offset)
-    if spread[2] <= 2 * spread[1]:
+    if spread[2] <= ELONGATION * spread[1]:
         return None
     direction = vectors[:, 2]
     order = np.arange(len(centers_m)) - (len(centers_m) - 1) / 2
@@ -81,6 +90,8 @@ class SpaceSections:
     """(3,) unit vector of a section's own x; its y points toward the camera."""
     toward_camera: Floats
     """(3,) unit."""
+    pitch_m: float
+    """Distance from one section to the next."""
     start: Indices
     """(S + 1,) section s holds the points from start[s] to start[s + 1]."""
     pixel: Indices
@@ -146,7 +157,8 @@ def cut_in_space(cloud_m: Cloud, pixel: Indices, axis: Axis, ends_m: tuple[float
     order = np.argsort(place)
     start = np.searchsorted(place, np.arange(count + 1), sorter=order)
     pixel = pixel[order[start[0] : start[-1]]]
-    return SpaceSections(axis, across, toward_camera, (start - start[0]).astype(np.int32), pixel, cloud_m)
+    pitch_m = (ends_m[1] - ends_m[0]) / count
+    return SpaceSections(axis, across, toward_camera, pitch_m, (start - start[0]).astype(np.int32), pixel, cloud_m)
 
 
 def _section_and_place(points_m: Cloud, axis: Axis, across: Floats, ends_m: tuple[float, float], count: int) -> Floats:
@@ -156,5 +168,5 @@ def _section_and_place(points_m: Cloud, axis: Axis, across: Floats, ends_m: tupl
     section = (points_m @ axis.direction.astype(np.float32) - low) * (count / (high - low))
     x = points_m @ across.astype(np.float32)
     x -= x.min(initial=0.0)
-    x /= 1.001 * x.max(initial=0.0) + 1e-9
+    x *= BELOW_ONE / max(float(x.max(initial=0.0)), np.finfo(np.float32).tiny)
     return np.add(np.floor(section, out=section), x, dtype=np.float64)

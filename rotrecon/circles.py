@@ -58,7 +58,7 @@ def base_points(points_m: Cloud, pixel: Indices, kept: Bools) -> tuple[Floats, I
     count = kept.sum(axis=1, dtype=np.int32)
     first = kept.argmax(axis=1)
     last = kept.shape[1] - 1 - kept[:, ::-1].argmax(axis=1)
-    rank = kept.cumsum(axis=1, dtype=np.int16)
+    rank = kept.cumsum(axis=1, dtype=np.min_scalar_type(-kept.shape[1]))
     middle = (rank > (count[:, None] - 1) // 2).argmax(axis=1)
     column = np.stack([first, middle, last], axis=1)
     chosen = np.take_along_axis(pixel, column, axis=1)

@@ -79,9 +79,10 @@ def cut_sections(area: AreaOfInterest, axis: ObjectAxis, size_px: tuple[int, int
     Raises DrawingError for a drawing that cannot be cut. Sections and lines without a pixel of the area are left out.
     """
     mask = _area_mask(area, size_px)
-    start, end = np.array(axis.start_px), np.array(axis.end_px)
+    start, end = np.array(axis.start_px, dtype=np.float64), np.array(axis.end_px, dtype=np.float64)
+    _check_on_frame("the axis's end", np.stack([start, end]), size_px)
     length_px = float(np.linalg.norm(end - start))
-    if not np.isfinite(length_px) or length_px < 1.0:
+    if length_px < 1.0:
         raise DrawingError("the axis has no length; draw a stroke along the object")
     along = (end - start) / length_px
     across = np.array([-along[1], along[0]])
@@ -131,33 +132,40 @@ def _area_mask(area: AreaOfInterest, size_px: tuple[int, int]) -> Bytes:
     vertices = np.array(area.vertices_px, dtype=np.float64).reshape(-1, 2)
     if len(vertices) < 3:
         raise DrawingError("the area has fewer than three corners; drag a rectangle or click a polygon")
-    if not np.isfinite(vertices).all():
-        raise DrawingError("the area has a corner that is not a number; give every corner as u,v in pixels")
-    outside = (vertices < -0.5) | (vertices > (width, height))
-    if outside.any():
-        u, v = vertices[outside.any(axis=1)][0]
-        raise DrawingError(
-            f"the area's corner {u:g},{v:g} lies outside the frame of {width} x {height} px; draw it on the frame"
-        )
-    if _crosses_itself(vertices):
-        raise DrawingError("the area's outline crosses itself; draw its corners in order round the object")
-    if cv2.contourArea(vertices.astype(np.float32)) < 1.0:
+    _check_on_frame("the area's corner", vertices, size_px)
+    if np.ptp(vertices, axis=0).min() < 1.0:
         raise DrawingError("the area has no size; draw it round the object")
+    if _crosses_itself(vertices[(vertices != np.roll(vertices, 1, axis=0)).any(axis=1)]):
+        raise DrawingError("the area's outline crosses or touches itself; draw its corners in order round the object")
     mask = np.zeros((height, width), dtype=np.uint8)
     cv2.fillPoly(mask, [np.rint(vertices).astype(np.int32)], 1)
     return mask
 
 
+def _check_on_frame(what: str, points: Floats, size_px: tuple[int, int]) -> None:
+    """Refuse points (n, 2) beyond the frame; its far border may be named by the frame's size."""
+    outside = ~((points >= -0.5) & (points <= size_px)).all(axis=1)
+    if outside.any():
+        u, v = points[outside][0]
+        width, height = size_px
+        raise DrawingError(f"{what} {u:g},{v:g} lies outside the frame of {width} x {height} px; draw it on the frame")
+
+
 def _crosses_itself(vertices: Floats) -> bool:
-    """Whether two edges (of N) that are not neighbours meet; (N, N) orientation tests at once."""
+    """Whether two of N edges meet elsewhere than at a corner they share, or neighbours fold back on each other."""
     start, end = vertices, np.roll(vertices, -1, axis=0)
+    along, onward = end - start, np.roll(end - start, -1, axis=0)
+    folds_back = (along[:, 0] * onward[:, 1] == along[:, 1] * onward[:, 0]) & ((along * onward).sum(axis=1) < 0)
 
-    def side(a: Floats, b: Floats, c: Floats) -> Floats:
-        """Sign of the turn a -> b -> c, for every pair of an edge and a point."""
-        return np.sign(
-            (b[..., 0] - a[..., 0]) * (c[..., 1] - a[..., 1]) - (b[..., 1] - a[..., 1]) * (c[..., 0] - a[..., 0])
-        )
+    def side(point: Floats) -> Floats:
+        """Sign (N, N) of the turn from each edge to each point."""
+        offset = point[None] - start[:, None]
+        return np.sign(along[:, None, 0] * offset[..., 1] - along[:, None, 1] * offset[..., 0])
 
-    a, b, c, d = start[:, None], end[:, None], start[None], end[None]
-    meet = (side(a, b, c) * side(a, b, d) < 0) & (side(c, d, a) * side(c, d, b) < 0)
-    return bool(meet.any())
+    low, high = np.minimum(start, end), np.maximum(start, end)
+    boxes_meet = ((low[:, None] <= high[None]) & (low[None] <= high[:, None])).all(axis=2)
+    straddles = side(start) * side(end) <= 0
+    number = np.arange(len(vertices))
+    apart = np.abs(number[:, None] - number[None])
+    strangers = (apart > 1) & (apart < len(vertices) - 1)
+    return bool(folds_back.any() or (strangers & boxes_meet & straddles & straddles.T).any())

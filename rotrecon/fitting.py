@@ -70,7 +70,7 @@ def fit_solid(
     state[circles.used & ~radii.kept] = SectionState.ODD_RADIUS
     along = axis.along(circles.center_m)
     used = state == SectionState.USED
-    solid = _solid(radii, kind, axis, along[used], settings)
+    solid = _solid(radii, kind, axis, along[used], sections.pitch_m, settings)
     return Fit(
         solid=solid,
         section_state=state,
@@ -82,13 +82,14 @@ def fit_solid(
     )
 
 
-def _solid(radii: RadiusFit, kind: Kind | None, axis: Axis, along: Floats, settings: Settings) -> Primitive:
-    """Geometry of a curve through radii at positions (n,) along the axis."""
+def _solid(
+    radii: RadiusFit, kind: Kind | None, axis: Axis, along: Floats, pitch_m: float, settings: Settings
+) -> Primitive:
+    """Geometry of a curve through radii at positions (n,) along the axis, of sections `pitch_m` apart."""
     if radii.shape == "sphere":
         return Sphere(axis.point_m + radii.center_m * axis.direction, axis.direction, radii.radius_m)
     low, high = float(along.min()), float(along.max())
-    spacing = (high - low) / max(len(along) - 1, 1)
-    middle, length = (low + high) / 2, high - low + spacing
+    middle, length = (low + high) / 2, high - low + pitch_m
     radius = radii.radius_m + radii.slope * middle
     if radii.shape == "cone":
         shape: Kind = "cone"

@@ -17,6 +17,8 @@ Stage = Literal["close", "accepted", "object"]
 """Figure 3 a: distant and close pixels; b: what passed the three-sigma tests; c: the object."""
 
 NAVY, LIGHT_BLUE, YELLOW, RED = (16, 28, 110), (120, 196, 240), (250, 214, 40), (220, 40, 40)
+LATER_RUN = (96, 84, 168)
+"""Of pixels that the second or a later run called distant."""
 OUTLINE_COLOR = (255, 60, 200)
 CURVE_POINTS = 97
 """Enough for a polygon to pass for a circle at any size a frame can show."""
@@ -66,7 +68,7 @@ def blend(image: Bytes, layer: Bytes, mask: Bools, opacity: float) -> Bytes:
 def with_segmentation(image: Bytes, result: Reconstruction, stage: Stage = "object", opacity: float = 0.6) -> Bytes:
     """The image (H, W, 3) with one stage of the segmentation in the colours of figure 3."""
     segments = result.segments
-    palette = np.array([(0, 0, 0), NAVY, LIGHT_BLUE, YELLOW, RED], dtype=np.uint8)
+    palette = np.array([(0, 0, 0), NAVY, LIGHT_BLUE, YELLOW, RED, LATER_RUN], dtype=np.uint8)
     to_grid = np.stack([segments.across, segments.along])
     shift = -to_grid @ segments.origin_px - [segments.first_offset_px, 0]
     height, width = image.shape[:2]
@@ -83,10 +85,11 @@ def with_segmentation(image: Bytes, result: Reconstruction, stage: Stage = "obje
 
 
 def _categories(segmentation: Segmentation, stage: Stage) -> Bytes:
-    """Colour number (S, W) of each cell: 0 none, 1 distant, 2 close, 3 accepted, 4 object."""
+    """Colour number (S, W) of each cell: 0 none, 1 distant, 2 close, 3 accepted, 4 object, 5 distant in a later run."""
     history = segmentation.history
     category = (history & PixelHistory.DEPTH > 0).astype(np.uint8)
     category[(category > 0) & (segmentation.removed_in_run == 0)] = 2
+    category[segmentation.removed_in_run > 1] = 5
     if stage == "close":
         return category
     grown = history & (PixelHistory.GROWN_FORWARD | PixelHistory.GROWN_BACKWARD) > 0
@@ -125,6 +128,15 @@ def section_pixels(result: Reconstruction, section: int) -> Floats:
     start, end = result.sections.start[section : section + 2]
     v, u = np.divmod(result.sections.pixel[start:end], result.frame.camera.width)
     return np.stack([u, v], axis=1).astype(np.float64)
+
+
+def first_cut_line(result: Reconstruction, section: int) -> int | None:
+    """The line of pixels of the first cut that holds most of one section of the second cut; None for no pixels."""
+    if result.sections is None:
+        return None
+    pixel = result.sections.pixel[result.sections.start[section] : result.sections.start[section + 1]]
+    rows, _ = np.nonzero(np.isin(result.segments.pixel, pixel) & result.segmentation.kept)
+    return int(np.bincount(rows).argmax()) if len(rows) else None
 
 
 def _ring(center_m: Floats, normal: Floats, radius_m: float) -> Floats:

@@ -5,7 +5,8 @@ from dataclasses import dataclass
 import numpy as np
 
 from rotrecon.arrays import Bools, Floats
-from rotrecon.radii import RadiusFit
+from rotrecon.primitives import Kind
+from rotrecon.radii import SHAPE_OF_KIND, RadiusFit
 from rotrecon.settings import Settings
 
 PARAMETERS = {"cylinder": 1, "cone": 2, "sphere": 2}
@@ -42,6 +43,15 @@ def rank(curves: list[RadiusFit], along_m: Floats, used: Bools, settings: Settin
     shares = (weight / weight.sum()).tolist()
     candidates = [Candidate(c, c.radius_at_middle(along_m), share) for c, share in zip(plausible, shares, strict=True)]
     return tuple(sorted(candidates, key=lambda candidate: -candidate.score))
+
+
+def choose(candidates: tuple[Candidate, ...], kind: Kind | None, settings: Settings) -> Candidate | None:
+    """The most credible candidate, or that of the kind asked for; None when the sections speak against that kind."""
+    if kind is None:
+        return candidates[0]
+    limit_m = settings.kind_deviation * max(candidates[0].radii.deviation_m, settings.distance_floor_m)
+    asked = (c for c in candidates if c.radii.shape == SHAPE_OF_KIND[kind] and c.radii.deviation_m <= limit_m)
+    return next(asked, None)
 
 
 def _deserves_its_name(curve: RadiusFit, span_m: float, settings: Settings) -> bool:

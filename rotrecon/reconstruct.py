@@ -11,8 +11,8 @@ from rotrecon.drawing import CrossSegments, Drawing, DrawingError, cut_sections
 from rotrecon.fitting import FailureReason, Fit, FitFailure, fit_solid
 from rotrecon.frame import Frame
 from rotrecon.primitives import Primitive
-from rotrecon.radii import SHAPE_OF_KIND, SHAPES, Shape, fit_radii
-from rotrecon.recognition import Candidate, rank
+from rotrecon.radii import SHAPES, Shape, fit_radii
+from rotrecon.recognition import Candidate, choose, rank
 from rotrecon.segmentation import Segmentation, segment
 from rotrecon.settings import Settings
 from rotrecon.tools import NoTool, ToolProposal, propose_tool
@@ -84,12 +84,9 @@ def _usable_depth(frame: Frame, segments: CrossSegments) -> tuple[Cloud, Bools]:
     return depth_m, usable
 
 
-def _cut(points_m: Floats, count: Indices, settings: Settings, excluded: frozenset[int] = frozenset()) -> Cut:
-    """Circles through the base points (S, 3, 3) of sections, less the excluded ones, and their axis."""
+def _cut(points_m: Floats, count: Indices, settings: Settings) -> Cut:
+    """Circles through the base points (S, 3, 3) of sections, and their axis."""
     circles = circumcircles(points_m, count, settings)
-    state = circles.state.copy()
-    state[[section for section in excluded if section < len(state)]] = SectionState.EXCLUDED
-    circles = replace(circles, state=state)
     return Cut(circles, fit_axis(circles, settings))
 
 
@@ -99,18 +96,27 @@ def _cut_in_space(result: Reconstruction, first: Cut, axis: FittedAxis) -> tuple
     A cut tilted by t gives radii wrong by about t^2 / 2. The operator's exclusions come last, so that they do not
     renumber the sections they name.
     """
-    settings = result.settings
+    settings, cut = result.settings, first
     pixel = result.segments.pixel[result.segmentation.kept]
-    cloud_m = result.frame.points_m
     count = len(first.circles.state)
-    sections = cut_in_space(cloud_m, pixel, axis, span_along(axis, first.circles), count)
-    for _ in range(settings.cuts_in_space - 1):
-        cut = _cut(*sections.base_points(), settings)
-        if cut.axis is None or cut.axis.direction @ axis.direction > np.cos(settings.axis_settled_rad):
-            break
+    cuts_left = settings.cuts_in_space
+    while True:
+        sections = cut_in_space(result.frame.points_m, pixel, axis, span_along(axis, cut.circles), count)
+        cut, cuts_left = _cut(*sections.base_points(), settings), cuts_left - 1
+        if cut.axis is None or cuts_left == 0 or axis.turn_to(cut.axis) < settings.axis_settled_rad:
+            return sections, _without(cut, result.drawing.excluded_sections, settings)
         axis = cut.axis
-        sections = cut_in_space(cloud_m, pixel, axis, span_along(axis, cut.circles), count)
-    return sections, _cut(*sections.base_points(), settings, result.drawing.excluded_sections)
+
+
+def _without(cut: Cut, excluded: frozenset[int], settings: Settings) -> Cut:
+    """A cut less the sections that the operator took out."""
+    state = cut.circles.state.copy()
+    numbers = [section for section in excluded if 0 <= section < len(state)]
+    if not numbers:
+        return cut
+    state[numbers] = SectionState.EXCLUDED
+    circles = replace(cut.circles, state=state)
+    return Cut(circles, fit_axis(circles, settings))
 
 
 def _with_solid(
@@ -119,14 +125,14 @@ def _with_solid(
     """The reconstruction with its solid, or the reason why the kind asked for does not exist."""
     circles, settings, kind = second.circles, result.settings, result.drawing.kind
     along = axis.along(circles.center_m)
-    curves = {shape: fit_radii(shape, along, circles.radius_m, circles.used, settings) for shape in SHAPES}
-    candidates = rank([curve for curve in curves.values() if curve], along, circles.used, settings)
-    shape = candidates[0].radii.shape if kind is None else SHAPE_OF_KIND[kind]
-    radii = curves[shape]
-    if radii is None:
-        advice = f"the sections do not form a {kind}; choose another kind, or let the program decide"
+    curves = (fit_radii(shape, along, circles.radius_m, circles.used, settings) for shape in SHAPES)
+    candidates = rank([curve for curve in curves if curve], along, circles.used, settings)
+    chosen = choose(candidates, kind, settings)
+    if chosen is None:
+        best = candidates[0].radii.shape
+        advice = f"the sections speak for a {best} rather than a {kind}; choose that, or let the program decide"
         return replace(result, candidates=candidates, fit=FitFailure(FailureReason.NOT_THIS_KIND, advice))
-    fit = fit_solid(radii, kind, axis, circles, sections, settings)
+    fit = fit_solid(chosen.radii, kind, axis, circles, sections, settings)
     if fit.rms_m > settings.rms_over_radius * float(fit.solid.radius_at(0.0)):
         advice = (
             f"the pixels lie {1000 * fit.rms_m:.1f} mm off the best {fit.solid.kind}; "
@@ -139,7 +145,7 @@ def _with_solid(
         result,
         candidates=candidates,
         fit=fit,
-        first_cut_radius_m=_radius_from(first, shape, settings),
+        first_cut_radius_m=_radius_from(first, chosen.radii.shape, settings),
         solid=solid,
         tool=propose_tool(solid, T_base_camera[:3, 3], fit.concave, settings.tools),
     )

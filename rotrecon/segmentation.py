@@ -48,6 +48,20 @@ class Segmentation:
     def __post_init__(self) -> None:
         freeze(self)
 
+    def counts(self, row: int) -> dict[str, int]:
+        """How many pixels of one section each step of paper 3.2 removed, brought back and left."""
+        history, removed_in_run = self.history[row], self.removed_in_run[row]
+        runs = {f"distant in run {run}": removed_in_run == run for run in range(1, removed_in_run.max(initial=1) + 1)}
+        grown = PixelHistory.GROWN_FORWARD | PixelHistory.GROWN_BACKWARD
+        steps = {
+            **runs,
+            "outlier": history & PixelHistory.OUTLIER > 0,
+            "grown back": history & grown > 0,
+            "on a sparse line": history & PixelHistory.SPARSE_LINE > 0,
+            "kept": self.kept[row],
+        }
+        return {step: int(members.sum()) for step, members in steps.items()}
+
 
 def segment(depth_m: Cloud, usable: Bools, inside: Bools, settings: Settings) -> Segmentation:
     """Segment the closest object in every section at once.
@@ -115,10 +129,10 @@ def _scan(accepted: Bools, linked: Bools) -> Bools:
     `linked` (S, W) says that a pixel is within three sigma of the one before it. The chain that holds pixel w starts
     at the last broken link; w joins when the last accepted pixel up to w lies in that chain.
     """
-    column = np.arange(accepted.shape[1], dtype=np.int16)
-    chain_start = np.where(linked, np.int16(0), column)
+    column = np.arange(accepted.shape[1], dtype=np.min_scalar_type(-accepted.shape[1]))
+    chain_start = np.where(linked, column[:1], column)
     np.maximum.accumulate(chain_start, axis=1, out=chain_start)
-    last_accepted = np.where(accepted, column, np.int16(-1))
+    last_accepted = np.where(accepted, column, column.dtype.type(-1))
     np.maximum.accumulate(last_accepted, axis=1, out=last_accepted)
     return last_accepted >= chain_start
 

@@ -43,6 +43,8 @@ class Settings:
     """Less taper (3 degrees) is called a cylinder."""
     sphere_span: float = 0.5
     """Share of the diameter that the sections of a sphere must cover: less is a cylinder that bulges."""
+    kind_deviation: float = 2.0
+    """A kind that is asked for may deviate so many times more from the sections than the most credible one."""
     correlated_sections: float = 8.0
     """Neighbouring sections that err together: errors of matched depth are correlated over 5 to 12 px."""
     tools: ToolTable = field(default_factory=default_tools)

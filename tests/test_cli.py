@@ -60,10 +60,11 @@ def test_fit_in_words(rotrecon, scene):
 
 def test_kind_and_tools_can_be_given(rotrecon, scene, tmp_path):
     table = tmp_path / "tools.toml"
-    table.write_text('[saw]\nname = "saw"\ntakes = ["cylinder", "cone"]\ndiameter_mm = [1, 500]\n')
-    code, out, _ = rotrecon("fit", scene, *drawing_of(scene), "--kind", "cone", "--tools", table, "--json")
+    table.write_text('[saw]\nname = "saw"\ntakes = ["rod"]\ndiameter_mm = [1, 500]\n')
+    code, out, _ = rotrecon("fit", scene, *drawing_of(scene), "--kind", "rod", "--tools", table, "--json")
     assert code == 0
-    assert json.loads(out)["kind"] == "cone"
+    assert json.loads(out)["kind"] == "rod"
+    assert json.loads(out)["candidates"][0]["kind"] == "rod"
     assert json.loads(out)["tool"] == "saw"
 
 
@@ -106,7 +107,7 @@ def test_every_recording_gets_an_answer_in_the_stated_form(rotrecon, name):
         (["--area", "10,10 90,90", "--axis", "1,2"], "write its two ends"),
         (["--area", "10,10 900,90", "--axis", "20,20 80,80"], "outside the frame"),
         (["--area", "10,10 10,10", "--axis", "20,20 80,80"], "no size"),
-        (["--area", "10,10 90,90 90,10 10,90", "--axis", "20,20 80,80"], "crosses itself"),
+        (["--area", "10,10 90,90 90,10 10,90", "--axis", "20,20 80,80"], "crosses or touches itself"),
         (["--area", "10,10 90,90", "--axis", "20,20 20,20"], "no length"),
         (["--area", "10,10 90,90", "--axis", "300,20 300,90"], "outside the area"),
     ],

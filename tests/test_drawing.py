@@ -57,14 +57,31 @@ def test_polygon_leaves_out_what_lies_beside_it():
     [
         (((40, 30), (120, 110)), ((80, 30), (80, 110)), "fewer than three"),
         (((40, 30), (400, 30), (400, 110)), ((80, 30), (80, 110)), "outside the frame"),
-        (((40, 30), (float("nan"), 30), (90, 110)), ((80, 30), (80, 110)), "not a number"),
+        (((40, 30), (float("nan"), 30), (90, 110)), ((80, 30), (80, 110)), "corner nan,30 lies outside"),
         (((40, 30), (40, 30), (40, 30)), ((80, 30), (80, 110)), "no size"),
-        (((40, 30), (120, 110), (120, 30), (40, 110)), ((80, 30), (80, 110)), "crosses itself"),
+        (((40, 30), (120, 110), (120, 30), (40, 110)), ((80, 30), (80, 110)), "crosses"),
         (RECTANGLE.vertices_px, ((80, 70), (80, 70)), "no length"),
-        (RECTANGLE.vertices_px, ((80, float("inf")), (80, 70)), "no length"),
+        (((40, 30), (90, 30), (90, 30.4)), ((80, 30), (80, 110)), "no size"),
+        (((40, 30), (120, 110), (120, 30), (80, 70), (40, 110)), ((80, 30), (80, 110)), "crosses or touches itself"),
+        (((40, 30), (80, 70), (120, 30), (120, 110), (80, 70), (40, 110)), ((80, 30), (80, 99)), "touches itself"),
+        (((40, 30), (120, 30), (120, 110), (120, 60)), ((80, 30), (80, 110)), "touches itself"),
+        (RECTANGLE.vertices_px, ((80, float("inf")), (80, 70)), "end 80,inf lies outside"),
+        (RECTANGLE.vertices_px, ((80, 30), (80, 1e8)), "end 80,1e\\+08 lies outside"),
         (RECTANGLE.vertices_px, ((150, 30), (150, 110)), "outside the area"),
     ],
 )
 def test_drawings_nothing_can_be_measured_with(area, axis, says):
     with pytest.raises(DrawingError, match=says):
         cut_sections(AreaOfInterest(area), ObjectAxis(*axis), SIZE)
+
+
+def test_a_corner_given_twice_is_one_corner():
+    twice = AreaOfInterest(((40, 30), (120, 30), (120, 30), (120, 110), (40, 110)))
+    once = cut_sections(RECTANGLE, ObjectAxis((80, 30), (80, 110)), SIZE)
+    assert np.array_equal(cut_sections(twice, ObjectAxis((80, 30), (80, 110)), SIZE).pixel, once.pixel)
+
+
+def test_the_whole_frame_may_be_named_by_its_size():
+    whole = AreaOfInterest.rectangle((0, 0), SIZE)
+    segments = cut_sections(whole, ObjectAxis((100, 0), (100, 150)), SIZE)
+    assert np.array_equal(np.sort(segments.pixel[segments.inside]), np.arange(SIZE[0] * SIZE[1]))

@@ -10,6 +10,7 @@ from rotrecon.overlay import (
     blend,
     depth_colors,
     depth_range_m,
+    first_cut_line,
     outlines,
     section_pixels,
     with_outlines,
@@ -113,6 +114,14 @@ def test_hidden_parts_are_dashed():
     solid_line = with_outlines(blank, outlines(result)[:1])
     assert 0.5 < drawn.any(axis=2).sum() / solid_line.any(axis=2).sum() < 0.95
     assert not blank.any()
+
+
+def test_a_section_finds_the_line_of_pixels_that_holds_most_of_it():
+    result = result_of(UPRIGHT, "cylinder")
+    line = first_cut_line(result, 30)
+    assert line is not None
+    v = section_pixels(result, 30)[:, 1]
+    assert v.min() <= result.segments.pixel[line].max() // CAMERA.width <= v.max()
 
 
 def test_pixels_of_a_section_lie_across_the_object():

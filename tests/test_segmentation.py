@@ -77,6 +77,16 @@ def test_three_layers_need_two_runs():
     assert (result.removed_in_run[:, 20:28] == 2).all()
 
 
+def test_counts_say_what_each_step_did():
+    depth = np.tile(np.repeat([1.0, 2.0, 3.0], 20), (5, 1)).astype(np.float32)
+    depth += np.linspace(0, 0.01, depth.shape[1], dtype=np.float32)
+    usable = np.ones(depth.shape, dtype=bool)
+    counts = segment(depth, usable, usable, replace(ALL_LINES, layers=3)).counts(2)
+    assert counts["distant in run 1"] + counts["distant in run 2"] + counts["kept"] - counts["grown back"] == 60
+    assert counts["kept"] == 20
+    assert counts["distant in run 1"] >= 20
+
+
 def test_missing_depth_stops_a_scan():
     depth = np.array([[1.0, 1.0, 1.01, np.nan, 1.02, 1.02, 1.5, 1.5]] * 3, dtype=np.float32)
     result = segment(depth, np.isfinite(depth), np.ones(depth.shape, dtype=bool), ALL_LINES)
@@ -103,3 +113,10 @@ def test_lines_with_little_depth_are_spared_when_coverage_is_asked_for():
     inside = np.ones_like(usable)
     assert not segment(depth, usable, inside, Settings()).kept[:, 7].any()
     assert segment(depth, usable, inside, replace(Settings(), line_coverage=0.5)).kept[:4, 7].all()
+
+
+def test_sections_may_be_wider_than_a_short_integer_counts():
+    depth = np.full((2, 40_000), 2.0, dtype=np.float32)
+    depth[:, 38_000:] = np.linspace(1.0, 1.001, 2000)
+    usable = np.ones(depth.shape, dtype=bool)
+    assert np.flatnonzero(segment(depth, usable, usable, Settings()).kept[0]).tolist() == list(range(38_000, 40_000))
