@@ -36,6 +36,9 @@ DEMO = "leg"
 BAD_INPUT, CANNOT = 2, 3
 
 Scene = Annotated[Path, typer.Argument(metavar="SCENE", help="A scene folder.")]
+Layers = Annotated[
+    int, typer.Option(min=1, max=9, help="Objects that overlap in depth in the area: the closest one is measured.")
+]
 ToolFile = Annotated[Path | None, typer.Option(metavar="FILE", help="A tool table in place of the one that ships.")]
 
 
@@ -58,10 +61,13 @@ def fit(
     tools: ToolFile = None,
     json_: Annotated[bool, typer.Option("--json", help="Print one JSON object.")] = False,
     overlay: Annotated[Path | None, typer.Option(metavar="OUT.png", help="Write the frame with the result.")] = None,
+    layers: Layers = 2,
 ) -> None:
     """Measure the object that a drawing points at. Exits with 0 for a result, 3 for a reasoned "cannot"."""
     drawing = Drawing(parse_area(area), parse_axis(axis), None if kind == "auto" else kind)
-    settings = Settings(method=method, tools=default_tools() if tools is None else read_tools(tools))
+    settings = Settings(method=method, layers=layers, tools=default_tools() if tools is None else read_tools(tools))
+    if overlay is not None and overlay.suffix.lower() != ".png":
+        raise typer.BadParameter(f"--overlay {overlay} is not a PNG; name a file that ends in .png")
     frame = read_scene(scene).frame()
     if isinstance(frame, FrameUnavailable):
         content = cannot(frame.reason, method)
@@ -81,11 +87,15 @@ def _json(content: dict[str, object]) -> str:
 
 def _write_overlay(path: Path, result: Reconstruction) -> None:
     image = with_outlines(with_segmentation(result.frame.image, result), outlines(result))
+    _write(path, "the overlay", encode_png(image))
+
+
+def _write(path: Path, what: str, content: bytes) -> None:
     try:
-        write_whole(path, encode_png(image))
+        write_whole(path, content)
     except OSError as error:
         remedy = "name a file in a folder where you may write"
-        raise SceneError(path, "the overlay", f"cannot be written ({error.strerror})", remedy) from error
+        raise SceneError(path, what, f"cannot be written ({error.strerror})", remedy) from error
 
 
 @cli.command()
@@ -94,6 +104,7 @@ def serve(
     host: Annotated[str, typer.Option(help="Address to listen on.")] = "127.0.0.1",
     port: Annotated[int, typer.Option(min=1, max=65535)] = 8080,
     tools: ToolFile = None,
+    layers: Layers = 2,
 ) -> None:
     """Open the operator's console on a scene."""
     capture = _demo() if scene is None else read_scene(scene)
@@ -101,7 +112,7 @@ def serve(
     if isinstance(frame, FrameUnavailable):
         typer.echo(f"rotrecon: {frame.reason}", err=True)
         raise typer.Exit(CANNOT)
-    settings = Settings(tools=default_tools() if tools is None else read_tools(tools))
+    settings = Settings(layers=layers, tools=default_tools() if tools is None else read_tools(tools))
     from app.serving import serve as serve_console  # viser takes a second to import, which no other command needs
 
     serve_console(frame, capture.name, settings, host, port, notes=capture.notes)
@@ -176,6 +187,5 @@ def bench(
         return
     from app.bench.paper_method import paper_method_document
 
-    paper_method.parent.mkdir(parents=True, exist_ok=True)
-    write_whole(paper_method, paper_method_document().encode())
+    _write(paper_method, "the document", paper_method_document().encode())
     typer.echo(f"wrote {paper_method}")

@@ -12,28 +12,18 @@ from rotrecon.workspace import Workspace
 
 @dataclass(frozen=True)
 class StereoNoise:
-    """A stereo camera errs in disparity, by the same amount at every depth."""
+    """A stereo camera errs in disparity, by the same amount at every depth: sigma_z = z^2 sigma_d / (f b)."""
 
     baseline_m: float
     disparity_sigma_px: float
 
-    def sigma_m(self, depth_m: Floats | Cloud, focal_px: float) -> Floats:
-        """Standard deviation of depth: z^2 sigma_d / (f b)."""
-        depth = np.asarray(depth_m, dtype=np.float64)
-        return depth**2 * self.disparity_sigma_px / (focal_px * self.baseline_m)
-
 
 @dataclass(frozen=True)
 class DepthCameraNoise:
-    """A depth camera whose error has a floor and grows with the square of depth."""
+    """A depth camera whose error has a floor and grows with the square of depth: sigma_z = sigma0 + sigma2 z^2."""
 
     sigma0_m: float
     sigma2_per_m: float
-
-    def sigma_m(self, depth_m: Floats | Cloud, focal_px: float) -> Floats:
-        """Standard deviation of depth: sigma0 + sigma2 z^2."""
-        depth = np.asarray(depth_m, dtype=np.float64)
-        return self.sigma0_m + self.sigma2_per_m * depth**2
 
 
 DepthNoise = StereoNoise | DepthCameraNoise

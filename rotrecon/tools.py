@@ -4,6 +4,7 @@ import tomllib
 from dataclasses import dataclass
 from functools import cache
 from itertools import combinations
+from math import isfinite
 from pathlib import Path
 from typing import Annotated
 
@@ -112,7 +113,7 @@ def read_tools(path: Path) -> ToolTable:
         entries = tomllib.loads(path.read_text(encoding="utf-8"))
     except OSError as error:
         raise ToolTableError(f"{path}: cannot be read ({error.strerror}); give the path of a tool table") from error
-    except (tomllib.TOMLDecodeError, UnicodeDecodeError) as error:
+    except (tomllib.TOMLDecodeError, UnicodeDecodeError, RecursionError) as error:
         raise ToolTableError(f"{path}: is not TOML ({error}); correct it there") from error
     if not entries:
         raise ToolTableError(f"{path}: holds no tool; add a table such as [cutter]")
@@ -130,9 +131,13 @@ def _tool(path: Path, key: str, entry: object) -> Tool:
     except msgspec.ValidationError as error:
         raise ToolTableError(f"{path}: [{key}]: {error}; see the table that ships with the program") from error
     low, high = tool.diameter_mm
-    if not tool.takes:
-        raise ToolTableError(f"{path}: [{key}] takes nothing; name at least one kind of object in 'takes'")
-    if not (low <= high < float("inf")):
+    if not tool.name.strip():
+        raise ToolTableError(f"{path}: [{key}] has no name; give the tool the name an operator knows it by")
+    if len(set(tool.takes)) != len(tool.takes) or not tool.takes:
+        raise ToolTableError(f"{path}: [{key}] takes {list(tool.takes)}; name at least one kind of object, each once")
+    if not all(isfinite(value) for value in msgspec.structs.asdict(tool).values() if isinstance(value, float)):
+        raise ToolTableError(f"{path}: [{key}] holds a number that is not finite; leave a limit out that there is not")
+    if not (low <= high and isfinite(high)):
         raise ToolTableError(f"{path}: [{key}] diameter_mm [{low:g}, {high:g}] is not a range; give [lowest, highest]")
     if tool.opening_mm is not None and tool.opening_mm < high:
         raise ToolTableError(

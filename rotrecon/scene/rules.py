@@ -8,13 +8,27 @@ import numpy as np
 from rotrecon.arrays import Floats
 from rotrecon.camera import is_rigid
 from rotrecon.errors import SceneError
+from rotrecon.scene.formats.depth_limits import FARTHEST_M
 from rotrecon.scene.formats.source import MAX_PIXELS
 from rotrecon.scene.lens import COEFFICIENT_COUNTS
-from rotrecon.scene.schema import EXAMPLES, CameraTable, FrameTable, SceneTable, ViewTable, WorkspaceTable
+from rotrecon.scene.schema import (
+    EXAMPLES,
+    CameraTable,
+    DepthNoiseTable,
+    FrameTable,
+    SceneTable,
+    ViewTable,
+    WorkspaceTable,
+)
 
 FOCAL_LENGTHS_PER_SIDE = (0.05, 1000.0)
 """Focal lengths in larger sides of the picture, from beyond any fisheye to beyond any telescope: a focal length in
 millimetres or as a part of the picture falls outside."""
+
+MOST_UNEQUAL = 4.0
+"""Ratio of the two focal lengths: pixels are square, or nearly so."""
+PRINCIPAL_POINT_SIDES = 5.0
+"""How far from the picture's middle the principal point may lie, in sides: crops and tilted lenses move it."""
 
 
 def check_scene(file: Path, scene: SceneTable) -> None:
@@ -48,6 +62,15 @@ def _check_camera(file: Path, field: str, camera: CameraTable) -> None:
         problem = (
             f"has focal lengths {camera.K[0][0]:g} and {camera.K[1][1]:g}, no pixels of a {width} x {height} picture"
         )
+        raise SceneError(file, f"{field}.K", problem, f"write {EXAMPLES['K']}")
+    if camera.K[0][0] > MOST_UNEQUAL * camera.K[1][1] or camera.K[1][1] > MOST_UNEQUAL * camera.K[0][0]:
+        problem = (
+            f"has focal lengths {camera.K[0][0]:g} and {camera.K[1][1]:g}, which no camera's pixels make so unequal"
+        )
+        raise SceneError(file, f"{field}.K", problem, f"write {EXAMPLES['K']}")
+    cx, cy = camera.K[0][2], camera.K[1][2]
+    if max(abs(cx / width - 0.5), abs(cy / height - 0.5)) > PRINCIPAL_POINT_SIDES:
+        problem = f"has its principal point at ({cx:g}, {cy:g}), far outside a picture of {width} x {height} px"
         raise SceneError(file, f"{field}.K", problem, f"write {EXAMPLES['K']}")
     count = len(camera.distortion)
     if count not in COEFFICIENT_COUNTS or not np.isfinite(camera.distortion).all():
@@ -85,8 +108,10 @@ def _check_frame(file: Path, frame: FrameTable, cameras: dict[str, CameraTable])
             f"is {scale:g}" if frame.depth is not None else "is given without a depth map",
             f"write {EXAMPLES['depth_scale']}, or leave it out",
         )
-    for field, value in ({} if frame.noise is None else msgspec.structs.asdict(frame.noise)).items():
-        if not (np.isfinite(value) and value > 0):
+    noise = {} if frame.noise is None else msgspec.structs.asdict(frame.noise)
+    for field, value in noise.items():
+        may_be_zero = isinstance(frame.noise, DepthNoiseTable) and any(noise.values())
+        if not (np.isfinite(value) and (value > 0 or (value == 0 and may_be_zero))):
             raise SceneError(file, f"frame.noise.{field}", f"is {value:g}", "give a positive number")
 
 
@@ -105,11 +130,21 @@ def _check_use(file: Path, field: str, use: FrameTable | ViewTable, cameras: dic
             "is not a rigid pose",
             "give a rotation of determinant 1 and a translation in metres over [0, 0, 0, 1]",
         )
+    if use.T_base_camera is not None and np.abs(np.array(use.T_base_camera)[:3, 3]).max() > FARTHEST_M:
+        raise SceneError(
+            file,
+            f"{field}.T_base_camera",
+            f"puts the camera over {FARTHEST_M:g} m away",
+            "give the translation in metres",
+        )
 
 
 def _check_workspace(file: Path, workspace: WorkspaceTable) -> None:
     for field, limits in msgspec.structs.asdict(workspace).items():
-        if limits is not None and not np.all(np.array(limits[0]) < np.array(limits[1])):
+        if limits is None:
+            continue
+        in_order = np.all(np.array(limits[0]) < np.array(limits[1]))
+        if not in_order or np.abs(np.array(limits)).max() > FARTHEST_M:
             raise SceneError(
                 file, f"workspace.{field}", f"has the limits {limits[0]} and {limits[1]}", f"write {EXAMPLES[field]}"
             )

@@ -44,13 +44,13 @@ def write_scene(folder: Path, record: SceneRecord, beside: Mapping[str, bytes] =
     written or would not be read again.
     """
     folder = folder.resolve()
-    if folder.exists() and not (folder.is_dir() and not any(folder.iterdir())):
-        raise _refusal(folder, "exists already and is not an empty folder", "name a new folder")
     files = _scene_files(folder, record)
     if clash := [name for name in beside if name in files or Path(name).name != name]:
         raise ValueError(f"{clash[0]} cannot be a file beside the scene's own")
     aside = folder.with_name(f".{folder.name}.{secrets.token_hex(4)}.partial")
     try:
+        if folder.exists() and not (folder.is_dir() and not any(folder.iterdir())):
+            raise _refusal(folder, "exists already and is not an empty folder", "name a new folder")
         folder.parent.mkdir(parents=True, exist_ok=True)
         aside.mkdir()
         for name, content in {**files, **beside}.items():

@@ -7,7 +7,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from rotrecon.arrays import Bytes, Cloud, freeze
-from rotrecon.scene.formats.depth_limits import check_depth
+from rotrecon.scene.formats.depth_limits import FARTHEST_M, check_depth
 from rotrecon.scene.formats.source import SourceFile
 
 
@@ -36,6 +36,7 @@ def make_cloud(source: SourceFile, points_m: NDArray[Any], colors: NDArray[Any] 
     invalid = ~np.isfinite(points).all(axis=-1) | ~(points[..., 2] > 0)
     points[invalid] = np.nan
     check_depth(source, points[..., 2])
+    points[(np.abs(points) > FARTHEST_M).any(axis=-1)] = np.nan
     return RawCloud(points, None if colors is None else np.array(colors, dtype=np.uint8))
 
 

@@ -3,7 +3,7 @@
 import numpy as np
 
 from rotrecon.arrays import Cloud
-from rotrecon.scene.formats.depth_limits import check_depth
+from rotrecon.scene.formats.depth_limits import FARTHEST_M, check_depth
 from rotrecon.scene.formats.image import read_raw_image
 from rotrecon.scene.formats.npz import read_array
 from rotrecon.scene.formats.source import SourceFile
@@ -26,6 +26,7 @@ def read_depth(source: SourceFile, depth_scale: float | None) -> Cloud:
         )
     depth[~(np.isfinite(depth) & (depth > 0))] = np.nan
     check_depth(source, depth)
+    depth[depth > FARTHEST_M] = np.nan
     return depth
 
 

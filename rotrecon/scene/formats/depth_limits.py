@@ -8,6 +8,9 @@ from rotrecon.scene.formats.source import SourceFile
 FARTHEST_MEDIAN_M = 100.0
 """Far beyond any arm's camera, near beyond the first depth map in millimetres that is taken for metres."""
 
+FARTHEST_M = 1000.0
+"""A single depth or coordinate beyond this is a spike of the sensor, not a measurement."""
+
 
 def check_depth(source: SourceFile, depth_m: Cloud) -> None:
     """Refuse depths, NaN where not valid, of which none is valid or which cannot be metres; raises SceneError."""
