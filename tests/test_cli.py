@@ -146,6 +146,15 @@ def test_simulate_writes_a_scene_that_fit_reads_and_never_over_another(rotrecon,
     assert sorted((path.name, path.stat().st_mtime_ns) for path in (tmp_path / "ball").iterdir()) == before
 
 
+def test_places_that_cannot_be_written_are_named(rotrecon, scene, tmp_path):
+    code, _, err = rotrecon("simulate", tmp_path / ("a" * 300))
+    assert code == 2
+    assert "cannot be written" in err
+    code, _, err = rotrecon("fit", scene, *drawing_of(scene), "--overlay", tmp_path / "out.jpg")
+    assert code == 2
+    assert "ends in .png" in err
+
+
 def test_import_of_a_picture_with_depth(rotrecon, tmp_path):
     cv2.imwrite(str(tmp_path / "rgb.png"), np.full((60, 80, 3), 90, np.uint8))
     cv2.imwrite(str(tmp_path / "depth.png"), np.full((60, 80), 900, np.uint16))
@@ -154,6 +163,10 @@ def test_import_of_a_picture_with_depth(rotrecon, tmp_path):
     code, text, _ = rotrecon("import", tmp_path / "rgb.png", out, *options, "--intrinsics", "100,100,39.5,29.5")
     assert code == 0
     assert f"wrote {out}" in text
+    for size in ("nanx5", "640.9x480", "640"):
+        code, _, err = rotrecon("import", tmp_path / "rgb.png", tmp_path / "other", *options, "--size", size)
+        assert code == 2
+        assert "640x480" in err
     for wrong in ("100,100", "a,b,c,d"):
         code, _, err = rotrecon("import", tmp_path / "rgb.png", tmp_path / "other", *options, "--intrinsics", wrong)
         assert code == 2

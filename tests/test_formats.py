@@ -118,7 +118,7 @@ def test_depth_is_nan_where_it_is_not_valid(tmp_path):
     (tmp_path / "a.png").write_bytes(encode_png(counts))
     expected = np.array([[np.nan, 1, np.nan], [0.001, 65.534, 0.25]], np.float32)
     assert np.array_equal(read_depth(source(tmp_path / "a.png"), 0.001), expected, equal_nan=True)
-    metres = np.array([[np.nan, 1, np.inf], [-1, 0, 0.25]])
+    metres = np.array([[np.nan, 1, 1e30], [-1, 0, 0.25]])
     (tmp_path / "a.npz").write_bytes(encode_npz(depth_m=metres))
     expected = np.array([[np.nan, 1, np.nan], [np.nan, np.nan, 0.25]], np.float32)
     assert np.array_equal(read_depth(source(tmp_path / "a.npz"), None), expected, equal_nan=True)
