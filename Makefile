@@ -9,11 +9,12 @@ all: .venv/installed
 
 .venv/installed: pyproject.toml constraints.txt
 	$(PYTHON) -m venv .venv >/dev/null 2>&1 || ($(APT) update && $(APT) install -y python3-venv && $(PYTHON) -m venv .venv)
-	$(BIN)/pip install --quiet --constraint constraints.txt --editable .
+	$(BIN)/pip install --quiet --constraint constraints.txt hatchling editables
+	$(BIN)/pip install --quiet --constraint constraints.txt --no-build-isolation --editable .
 	touch $@
 
 .venv/installed-test: .venv/installed
-	$(BIN)/pip install --quiet --constraint constraints.txt --editable '.[test]'
+	$(BIN)/pip install --quiet --constraint constraints.txt --no-build-isolation --editable '.[test]'
 	touch $@
 
 # libatomic1 is what the browser tests' driver needs; Ubuntu calls Chromium chromium-browser
