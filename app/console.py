@@ -3,7 +3,8 @@
 import asyncio
 import io
 import logging
-from contextlib import redirect_stdout
+from collections.abc import Iterator
+from contextlib import contextmanager, redirect_stdout
 from dataclasses import dataclass
 
 from viser import CameraHandle, ClientHandle, ViserServer
@@ -78,6 +79,7 @@ class Console:
         self.frame, self._name, self._settings, self._notes = frame, name, settings, notes
         self._host, self._port, self._cloud_points = host, port, cloud_points
         self.pages: dict[int, PageView] = {}
+        self._opened: dict[int, ClientHandle] = {}
         self._measuring: asyncio.Task[None] | None = None
         self._takes_long = False
 
@@ -133,11 +135,11 @@ class Console:
             items = [await self._queue.get()]
             while not self._queue.empty():
                 items.append(self._queue.get_nowait())
-            opened = [item.client for item in items if isinstance(item, PageOpened)]
             for item in items:
-                self._take(item)
+                with _logged("what happened was not taken in"):
+                    self._take(item)
             self._measure_latest()
-            await asyncio.to_thread(self._show, opened)
+            await asyncio.to_thread(self._show)
             self.server.flush()
             if self._queue.empty() and self._measuring is None:
                 self._settled.set()
@@ -155,9 +157,12 @@ class Console:
                 self._takes_long = False
             case TakesLong(revision):
                 self._takes_long = self._measuring is not None and revision == self.session.revision
+            case PageOpened(client):
+                self._opened[client.client_id] = client
             case PageClosed(client_id):
+                self._opened.pop(client_id, None)
                 self.pages.pop(client_id, None)
-            case PageOpened() | CameraMoved():
+            case CameraMoved():
                 pass
 
     def _measure_latest(self) -> None:
@@ -172,18 +177,30 @@ class Console:
         alarm.cancel()
         self.post(Reconstructed(revision, outcome))
 
-    def _show(self, opened: list[ClientHandle]) -> None:
+    def _show(self) -> None:
         """Show the session on every page; runs in a thread, and only one at a time."""
-        for client in opened:
-            self.pages[client.client_id] = self._new_page(client)
-        self.panels.show(self.session, self._takes_long)
-        self._scene.show(self.session.reconstruction)
+        with _logged("the panels cannot be shown"):
+            self.panels.show(self.session, self._takes_long)
+        with _logged("the scene cannot be shown"):
+            self._scene.show(self.session.reconstruction)
+        while self._opened:
+            client_id, client = self._opened.popitem()
+            with self._unless_gone(client_id):
+                self.pages[client_id] = self._new_page(client)
         for client_id, page in list(self.pages.items()):
-            try:
+            with self._unless_gone(client_id):
                 page.show(self.session)
+
+    @contextmanager
+    def _unless_gone(self, client_id: int) -> Iterator[None]:
+        """Drop a page that was closed while something was done with it; log what goes wrong with an open one."""
+        with _logged(f"page {client_id} cannot be shown"):
+            try:
+                yield
             except Exception:
                 if client_id in self.server.get_clients():
-                    log.exception("page %d cannot be shown", client_id)
+                    raise
+                self.pages.pop(client_id, None)
 
     def _new_page(self, client: ClientHandle) -> PageView:
         client.camera.on_update(self._camera_moved)
@@ -208,6 +225,15 @@ class Console:
         page = self.pages.get(camera.client.client_id)
         if page is not None and page.state.view == "camera":
             self.post(CameraMoved())
+
+
+@contextmanager
+def _logged(failure: str) -> Iterator[None]:
+    """Log a mistake of the program's own instead of letting it end the console."""
+    try:
+        yield
+    except Exception:
+        log.exception(failure)
 
 
 def _refuse_to_share(verbose: bool = True) -> None:

@@ -1,12 +1,14 @@
 """The one queue: a newer drawing overtakes, one measurement at a time, and a long one is seen to be under way."""
 
-from collections.abc import Iterator
+from collections.abc import Callable, Iterator
 from threading import Event as Gate
+from time import monotonic, sleep
 
 import pytest
 
 import app.console
-from app.console import Console, FromPage
+from app.bench.wire import WirePage
+from app.console import Console, FromPage, PageClosed, PageOpened
 from app.events import Event, HandleMoved, PointerDragged, Refused
 from app.measuring import measure
 from rotrecon.drawing import Drawing
@@ -41,6 +43,13 @@ def slow(monkeypatch: pytest.MonkeyPatch) -> Iterator[SlowMeasure]:
 def post(console: Console, *events: Event) -> None:
     for event in events:
         console.server.get_event_loop().call_soon_threadsafe(console.post, FromPage(-1, event))
+
+
+def until(condition: Callable[[], bool]) -> None:
+    end = monotonic() + WAIT_S
+    while not condition():
+        assert monotonic() < end
+        sleep(0.01)
 
 
 AREA = PointerDragged((50.0, 50.0), (150.0, 200.0))
@@ -90,3 +99,56 @@ def test_the_programs_own_mistake_is_told_and_not_the_end(
     assert console.session.notice is not None
     assert "its own mistake" in console.session.notice.text
     assert "ZeroDivisionError" in caplog.text
+
+
+@pytest.mark.filterwarnings("ignore:Queued a .* on a closed connection")
+def test_the_console_survives_pages_that_close_while_they_are_built(
+    console: Console, caplog: pytest.LogCaptureFixture
+) -> None:
+    for number in range(40):
+        WirePage(console.address, number, console.frame).close()
+    page = WirePage(console.address, 40, console.frame)
+    until(lambda: set(console.pages) == set(console.server.get_clients()) == {40})
+    page.close()
+    until(lambda: not console.pages)
+    post(console, AREA, AXIS)
+    console.wait_until_idle(WAIT_S)
+    assert console.session.up_to_date
+    assert not caplog.records
+
+
+def test_a_page_that_closes_before_it_is_built_does_not_stay(console: Console) -> None:
+    page = WirePage(console.address, 0, console.frame)
+    until(lambda: 0 in console.pages)
+    client = console.pages[0].client
+
+    def open_and_close() -> None:
+        console.post(PageOpened(client))
+        console.post(PageClosed(0))
+
+    console.server.get_event_loop().call_soon_threadsafe(open_and_close)
+    until(lambda: not console.pages)
+    page.close()
+
+
+@pytest.mark.parametrize("broken", ["panels.show", "_scene.show", "_new_page", "_take"])
+def test_a_mistake_in_showing_is_logged_and_not_the_end(
+    console: Console, broken: str, monkeypatch: pytest.MonkeyPatch, caplog: pytest.LogCaptureFixture
+) -> None:
+    def fail(*_: object) -> None:
+        raise ZeroDivisionError
+
+    with monkeypatch.context() as patched:
+        patched.setattr(*_place(console, broken), fail)
+        page = WirePage(console.address, 0, console.frame)
+        until(lambda: "ZeroDivisionError" in caplog.text)
+        console.wait_until_idle(WAIT_S)
+    post(console, AREA, AXIS)
+    console.wait_until_idle(WAIT_S)
+    assert console.session.up_to_date
+    page.close()
+
+
+def _place(console: Console, path: str) -> tuple[object, str]:
+    *owners, name = path.split(".")
+    return (getattr(console, owners[0]) if owners else console, name)
