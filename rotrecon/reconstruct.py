@@ -59,19 +59,21 @@ def reconstruct(frame: Frame, drawing: Drawing, settings: Settings) -> Reconstru
     Raises DrawingError for a drawing that cannot be used on this frame; what the data cannot hold is a FitFailure.
     """
     segments = cut_sections(drawing.area, drawing.axis, (frame.camera.width, frame.camera.height))
-    segmentation = segment(*_usable_depth(frame, segments), segments.inside, settings)
+    segmentation = segment(*usable_depth(frame, segments), segments.inside, settings)
     first = _cut(*base_points(frame.points_m, segments.pixel, segmentation.kept), settings)
     result = Reconstruction(
         frame, drawing, settings, segments, segmentation, first, fit=_why_not(first.circles, segmentation, settings)
     )
     if first.axis is None:
         return result
-    sections, second = _cut_in_space(result, first, first.axis)
+    pixel = segments.pixel[segmentation.kept]
+    sections, settled = cut_until_settled(frame.points_m, pixel, first.circles, first.axis, settings)
+    second = _without(settled, drawing.excluded_sections, settings)
     result = replace(result, sections=sections, second_cut=second, fit=_why_not(second.circles, segmentation, settings))
     return result if second.axis is None else _with_solid(result, first, second, second.axis, sections)
 
 
-def _usable_depth(frame: Frame, segments: CrossSegments) -> tuple[Cloud, Bools]:
+def usable_depth(frame: Frame, segments: CrossSegments) -> tuple[Cloud, Bools]:
     """Depth (S, W) of every cell, and where it is known and within the arm's limits."""
     depth_m = frame.points_m.reshape(-1, 3)[segments.pixel, 2]
     usable = segments.inside & np.isfinite(depth_m)
@@ -90,26 +92,25 @@ def _cut(points_m: Floats, count: Indices, settings: Settings) -> Cut:
     return Cut(circles, fit_axis(circles, settings))
 
 
-def _cut_in_space(result: Reconstruction, first: Cut, axis: FittedAxis) -> tuple[SpaceSections, Cut]:
-    """The segmented pixels cut anew across the axis in space, and again while the axis so found still turns.
+def cut_until_settled(
+    cloud_m: Cloud, pixel: Indices, first: SectionCircles, axis: FittedAxis, settings: Settings
+) -> tuple[SpaceSections, Cut]:
+    """Pixels (M,) of a cloud (H, W, 3) cut across an axis in space, and again while the axis so found still turns.
 
-    A cut tilted by t gives radii wrong by about t^2 / 2. The operator's exclusions come last, so that they do not
-    renumber the sections they name.
+    As many sections as the `first` cut has, over the length that its circles cover. A cut tilted by t gives radii
+    wrong by about t^2 / 2.
     """
-    settings, cut = result.settings, first
-    pixel = result.segments.pixel[result.segmentation.kept]
-    count = len(first.circles.state)
-    cuts_left = settings.cuts_in_space
+    circles, cuts_left = first, settings.cuts_in_space
     while True:
-        sections = cut_in_space(result.frame.points_m, pixel, axis, span_along(axis, cut.circles), count)
+        sections = cut_in_space(cloud_m, pixel, axis, span_along(axis, circles), len(first.state))
         cut, cuts_left = _cut(*sections.base_points(), settings), cuts_left - 1
         if cut.axis is None or cuts_left == 0 or axis.turn_to(cut.axis) < settings.axis_settled_rad:
-            return sections, _without(cut, result.drawing.excluded_sections, settings)
-        axis = cut.axis
+            return sections, cut
+        axis, circles = cut.axis, cut.circles
 
 
 def _without(cut: Cut, excluded: frozenset[int], settings: Settings) -> Cut:
-    """A cut less the sections that the operator took out."""
+    """A cut less the sections that the operator took out: last, so that they keep the numbers he knows them by."""
     state = cut.circles.state.copy()
     numbers = [section for section in excluded if 0 <= section < len(state)]
     if not numbers:

@@ -7,11 +7,12 @@ import numpy as np
 
 from app.bench.least_squares import least_squares_circles
 from rotrecon.arrays import Bools, Indices
-from rotrecon.axis import Axis, FittedAxis, SpaceSections, cut_in_space, fit_axis, span_along
+from rotrecon.axis import Axis, FittedAxis, cut_in_space, fit_axis, span_along
 from rotrecon.circles import SectionCircles, base_points, circumcircles
 from rotrecon.drawing import Drawing, cut_sections
 from rotrecon.frame import Frame
 from rotrecon.radii import SHAPE_OF_KIND, axis_length_radius, fit_radii
+from rotrecon.reconstruct import cut_until_settled, usable_depth
 from rotrecon.segmentation import segment
 from rotrecon.settings import Settings
 
@@ -50,7 +51,11 @@ def compose(frame: Frame, drawing: Drawing, settings: Settings, steps: Steps) ->
     first_axis = fit_axis(first, tolerance)
     if first_axis is None:
         return Radii()
-    sections = _sections_in_space(frame, pixel[kept], first, first_axis, settings, steps)
+    if steps.axis is None:
+        sections, _ = cut_until_settled(frame.points_m, pixel[kept], first, first_axis, settings)
+    else:
+        ends_m = span_along(steps.axis, first)
+        sections = cut_in_space(frame.points_m, pixel[kept], steps.axis, ends_m, len(first.state))
     second = circumcircles(*sections.base_points(), settings)
     if steps.least_squares:
         second = least_squares_circles(second, sections)
@@ -71,27 +76,9 @@ def compose(frame: Frame, drawing: Drawing, settings: Settings, steps: Steps) ->
 def _object_pixels(frame: Frame, drawing: Drawing, settings: Settings, steps: Steps) -> tuple[Indices, Bools]:
     """Index (S, W) of the pixels of the cross segments, and which (S, W) are the object's."""
     segments = cut_sections(drawing.area, drawing.axis, (frame.camera.width, frame.camera.height))
-    depth_m = frame.points_m.reshape(-1, 3)[segments.pixel, 2]
-    usable = segments.inside & np.isfinite(depth_m)
+    depth_m, usable = usable_depth(frame, segments)
     kept = segment(depth_m, usable, segments.inside, settings).kept
     return segments.pixel, kept if steps.mask is None else steps.mask(kept, segments.pixel) & usable
-
-
-def _sections_in_space(
-    frame: Frame, pixel: Indices, first: SectionCircles, first_axis: FittedAxis, settings: Settings, steps: Steps
-) -> SpaceSections:
-    """The pixels (M,) cut across the axis in space, until the axis settles, or across the axis that is given."""
-    count = len(first.state)
-    axis, circles = steps.axis or first_axis, first
-    sections = cut_in_space(frame.points_m, pixel, axis, span_along(axis, circles), count)
-    for _ in range(settings.cuts_in_space - 1 if steps.axis is None else 0):
-        circles = circumcircles(*sections.base_points(), settings)
-        fitted = fit_axis(circles, settings)
-        if fitted is None or fitted.direction @ axis.direction > np.cos(settings.axis_settled_rad):
-            break
-        axis = fitted
-        sections = cut_in_space(frame.points_m, pixel, axis, span_along(axis, circles), count)
-    return sections
 
 
 def _radius(circles: SectionCircles, fitted: FittedAxis, drawing: Drawing, tolerance: Settings) -> float:

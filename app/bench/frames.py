@@ -40,7 +40,7 @@ def task(pixels: int, direction: str = "vertical") -> Task:
     along = np.array(DIRECTIONS[direction])
     along /= np.linalg.norm(along)
     reach = along * (half / np.maximum(np.abs(along), 1e-9)).min()
-    width_px = 2 * np.abs([along[1], along[0]]) @ half
+    width_px = float(2 * np.abs([along[1], along[0]]) @ half)
     area = AreaOfInterest.rectangle(tuple(middle - half), tuple(middle + half - 1))
     stroke = ObjectAxis(tuple(middle - reach), tuple(middle + reach))
     return Task(_frame(along, OBJECT_SHARE * width_px), Drawing(area, stroke))

@@ -16,13 +16,13 @@ def least_squares_circles(circles: SectionCircles, sections: SpaceSections) -> S
     """
     used = circles.used
     section = np.repeat(np.arange(len(used)), np.diff(sections.start))
-    offset = sections.points_of(np.ones(len(used), dtype=np.bool_)) - sections.axis.point_m
+    points_m = sections.points_of(np.ones(len(used), dtype=np.bool_))
     across, toward = sections.across, sections.toward_camera
-    terms = np.stack([2 * offset @ across, 2 * offset @ toward, np.ones(len(offset))])
+    terms = np.concatenate([2 * sections.in_plane(points_m).T, np.ones((1, len(points_m)))])
     squared = (terms[0] ** 2 + terms[1] ** 2) / 4
 
     def summed(values: Floats) -> Floats:
-        return np.bincount(section, weights=values, minlength=len(used))[used]
+        return np.bincount(section, weights=values, minlength=len(used))[used].astype(np.float64)
 
     normal = np.array([[summed(row * column) for column in terms] for row in terms])
     right = np.array([summed(row * squared) for row in terms])

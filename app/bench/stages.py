@@ -12,7 +12,7 @@ from rotrecon.circles import base_points, circumcircles
 from rotrecon.drawing import cut_sections
 from rotrecon.fitting import Fit, fit_solid
 from rotrecon.radii import SHAPES, fit_radii
-from rotrecon.reconstruct import Reconstruction, reconstruct
+from rotrecon.reconstruct import Reconstruction, reconstruct, usable_depth
 from rotrecon.segmentation import segment
 from rotrecon.settings import Settings
 
@@ -58,8 +58,7 @@ def _stages(result: Reconstruction) -> dict[str, Callable[[], object]]:
     assert sections is not None
     assert second is not None
     assert second.axis is not None
-    depth_m = frame.points_m.reshape(-1, 3)[segments.pixel, 2]
-    usable = segments.inside & np.isfinite(depth_m)
+    depth_m, usable = usable_depth(frame, segments)
     circles, axis, pixel = second.circles, second.axis, segments.pixel[kept]
     along = axis.along(circles.center_m)
     ends_m = (float(np.nanmin(along)), float(np.nanmax(along)))
