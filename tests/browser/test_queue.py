@@ -19,17 +19,23 @@ WAIT_S = 10.0
 
 
 class SlowMeasure:
-    """Stands in for the measurement and takes as long as the test wants."""
+    """Stands in for the measurement and takes as long as the test wants, which may be longer for the first."""
 
     def __init__(self) -> None:
-        self.started, self.may_end = Gate(), Gate()
+        self.started, self.may_end, self.first_may_end = Gate(), Gate(), Gate()
         self.drawings: list[Drawing] = []
 
     def __call__(self, frame: Frame, drawing: Drawing, settings: Settings) -> Refused:
         self.drawings.append(drawing)
+        number = len(self.drawings)
         self.started.set()
         assert self.may_end.wait(WAIT_S)
-        return Refused(f"measured {len(self.drawings)}")
+        assert number > 1 or self.first_may_end.wait(WAIT_S)
+        return Refused(f"measured {number}")
+
+    def end(self) -> None:
+        self.may_end.set()
+        self.first_may_end.set()
 
 
 @pytest.fixture
@@ -37,7 +43,7 @@ def slow(monkeypatch: pytest.MonkeyPatch) -> Iterator[SlowMeasure]:
     slow = SlowMeasure()
     monkeypatch.setattr(app.console, "measure", slow)
     yield slow
-    slow.may_end.set()
+    slow.end()
 
 
 def post(console: Console, *events: Event) -> None:
@@ -60,11 +66,35 @@ def test_the_newest_drawing_overtakes_those_between(console: Console, slow: Slow
     post(console, AREA, AXIS)
     assert slow.started.wait(WAIT_S)
     post(console, *(HandleMoved("axis", 1, (100.0 + n, 190.0)) for n in range(1, 30)))
-    slow.may_end.set()
+    slow.end()
     console.wait_until_idle(WAIT_S)
     assert len(slow.drawings) <= 3
     assert slow.drawings[-1].axis.end_px == (129.0, 190.0)
     assert console.session.up_to_date
+
+
+def test_the_newest_drawing_does_not_wait_for_an_older_one(console: Console, slow: SlowMeasure) -> None:
+    slow.may_end.set()
+    post(console, AREA, AXIS)
+    assert slow.started.wait(WAIT_S)
+    post(console, HandleMoved("axis", 1, (120.0, 190.0)))
+    until(lambda: console.session.up_to_date and len(slow.drawings) == 2)
+    newest = console.session.measured
+    slow.end()
+    console.wait_until_idle(WAIT_S)
+    assert console.session.measured is newest, "the older drawing's result came too late"
+
+
+def test_no_more_than_two_measurements_are_under_way(console: Console, slow: SlowMeasure) -> None:
+    post(console, AREA, AXIS)
+    for n in range(1, 5):
+        post(console, HandleMoved("axis", 1, (100.0 + n, 190.0)))
+        until(lambda: len(slow.drawings) == 2)
+    sleep(0.1)
+    assert len(slow.drawings) == 2
+    slow.end()
+    console.wait_until_idle(WAIT_S)
+    assert slow.drawings[-1].axis.end_px == (104.0, 190.0)
 
 
 def test_a_long_measurement_is_shown_while_it_lasts(
@@ -81,7 +111,7 @@ def test_a_long_measurement_is_shown_while_it_lasts(
     monkeypatch.setattr(console.panels, "show", watch)
     post(console, AREA, AXIS)
     assert shown.wait(WAIT_S)
-    slow.may_end.set()
+    slow.end()
     console.wait_until_idle(WAIT_S)
     assert console.session.up_to_date
 
