@@ -23,8 +23,8 @@ from rotrecon.settings import Settings
 
 CLOUD_POINTS = 40_000
 """Points of the cloud that are sent to a page: half a megabyte."""
-PROGRESS_AFTER_S = 0.5
-"""A measurement that takes longer than this is seen to be under way."""
+MOST_MEASUREMENTS = 2
+"""Under way at once: the newest drawing need not wait for an older one, and a drag does not pile them up."""
 log = logging.getLogger(__name__)
 
 
@@ -44,24 +44,19 @@ class CameraMoved:
 
 
 @dataclass(frozen=True)
-class TakesLong:
-    revision: int
-
-
-@dataclass(frozen=True)
 class FromPage:
     client_id: int
     event: Event | PageEvent
 
 
-Item = PageOpened | PageClosed | CameraMoved | TakesLong | FromPage | Reconstructed
+Item = PageOpened | PageClosed | CameraMoved | FromPage | Reconstructed
 
 
 class Console:
     """One frame, shown to any number of pages.
 
-    Everything that happens is put on one queue, in viser's event loop; there it steps the session, starts at most one
-    measurement at a time in a thread, and is shown. `idle` tells when nothing of that is left to do.
+    Everything that happens is put on one queue, in viser's event loop; there it steps the session, starts a
+    measurement in a thread, and is shown. `idle` tells when nothing of that is left to do.
     """
 
     def __init__(
@@ -80,8 +75,7 @@ class Console:
         self._host, self._port, self._cloud_points = host, port, cloud_points
         self.pages: dict[int, PageView] = {}
         self._opened: dict[int, ClientHandle] = {}
-        self._measuring: asyncio.Task[None] | None = None
-        self._takes_long = False
+        self._measuring: dict[int, asyncio.Task[None]] = {}
 
     @property
     def address(self) -> str:
@@ -105,7 +99,7 @@ class Console:
         self._scene = SceneView(
             self.server, self.frame, self._pictures.television(None, "picture"), self._cloud_points, self._post_from
         )
-        self.panels.show(self.session, measuring=False)
+        self.panels.show(self.session)
         self._running = asyncio.run_coroutine_threadsafe(self._run(), self._loop)
         self.server.on_client_connect(self._page_opened)
         self.server.on_client_disconnect(self._page_closed)
@@ -141,7 +135,7 @@ class Console:
             self._measure_latest()
             await asyncio.to_thread(self._show)
             self.server.flush()
-            if self._queue.empty() and self._measuring is None:
+            if self._queue.empty() and not self._measuring:
                 self._settled.set()
 
     def _take(self, item: Item) -> None:
@@ -151,12 +145,9 @@ class Console:
                     self.session = step(self.session, event)
                 elif client_id in self.pages:
                     self.pages[client_id].take(event, self.session)
-            case Reconstructed():
+            case Reconstructed(revision):
+                del self._measuring[revision]
                 self.session = step(self.session, item)
-                self._measuring = None
-                self._takes_long = False
-            case TakesLong(revision):
-                self._takes_long = self._measuring is not None and revision == self.session.revision
             case PageOpened(client):
                 self._opened[client.client_id] = client
             case PageClosed(client_id):
@@ -166,21 +157,20 @@ class Console:
                 pass
 
     def _measure_latest(self) -> None:
-        """Start measuring the drawing as it is now, unless that is done or another one is still being measured."""
-        drawing = self.session.shown.complete
-        if drawing is not None and not self.session.up_to_date and self._measuring is None:
-            self._measuring = asyncio.create_task(self._measure(self.session.revision, drawing))
+        """Start measuring the drawing as it is now, unless that is done, under way, or has to wait for its turn."""
+        session, drawing = self.session, self.session.shown.complete
+        if drawing is None or session.up_to_date or session.revision in self._measuring:
+            return
+        if len(self._measuring) < MOST_MEASUREMENTS:
+            self._measuring[session.revision] = asyncio.create_task(self._measure(session.revision, drawing))
 
     async def _measure(self, revision: int, drawing: Drawing) -> None:
-        alarm = self._loop.call_later(PROGRESS_AFTER_S, self.post, TakesLong(revision))
-        outcome = await asyncio.to_thread(measure, self.frame, drawing, self._settings)
-        alarm.cancel()
-        self.post(Reconstructed(revision, outcome))
+        self.post(Reconstructed(revision, await asyncio.to_thread(measure, self.frame, drawing, self._settings)))
 
     def _show(self) -> None:
         """Show the session on every page; runs in a thread, and only one at a time."""
         with _logged("the panels cannot be shown"):
-            self.panels.show(self.session, self._takes_long)
+            self.panels.show(self.session)
         with _logged("the scene cannot be shown"):
             self._scene.show(self.session.reconstruction)
         while self._opened:

@@ -20,6 +20,10 @@ def hint(session: Session) -> str:
         return "Now draw the area: drag a rectangle round the object."
     if shown.axis is None:
         return "Now draw the object's axis: shift + drag along its middle."
+    if session.preview is not None:
+        return "Let go where it is right; the result follows."
+    if not session.up_to_date:
+        return "Measuring \N{HORIZONTAL ELLIPSIS}"
     if session.measured is not None and isinstance(session.measured.outcome, Refused):
         return sentence(session.measured.outcome.reason)
     if session.reconstruction is not None and isinstance(session.reconstruction.fit, FitFailure):

@@ -77,9 +77,9 @@ class Panels:
             self._gui.add_html(static_text("help.html") + f'<div class="rr-help"><h4>Scene</h4>{about}</div>')
         panel.dock_below(self._gui.main_panel)
 
-    def show(self, session: Session, measuring: bool) -> None:
+    def show(self, session: Session) -> None:
         """Bring texts and controls up to date, sending only what has changed."""
-        _set(self._hint, "content", hint_html(session, measuring))
+        _set(self._hint, "content", hint_html(session))
         _set(self._result, "content", result_html(session))
         _set(self._kind, "value", session.shown.kind or AUTO)
         _set(self._tool, "value", session.tool)

@@ -22,10 +22,9 @@ REASONS = {
 FIELD = '<div class="rr-field"><span>{name}</span><b data-field="{key}" data-value="{exact}">{text}</b></div>'
 
 
-def hint_html(session: Session, measuring: bool) -> str:
-    """What to do next, or that a measurement takes long."""
-    text = "Measuring \N{HORIZONTAL ELLIPSIS}" if measuring else hint(session)
-    return f'<div class="rr-hint" data-testid="hint">{escape(text)}</div>'
+def hint_html(session: Session) -> str:
+    """What to do next."""
+    return f'<div class="rr-hint" data-testid="hint">{escape(hint(session))}</div>'
 
 
 def result_html(session: Session) -> str:

@@ -175,6 +175,19 @@ def test_a_refusal_is_told_once_a_revision_and_not_during_a_drag() -> None:
     assert again.notice == released.notice
 
 
+def test_the_hint_tells_of_a_measurement_only_when_it_is_one_of_the_drawing_shown(
+    measured: tuple[Session, Reconstruction],
+) -> None:
+    assert "Measured." in hint(measured[0])
+    assert hint(after(AREA, AXIS)).startswith("Measuring")
+    refused = after(AREA, AXIS)
+    refused = step(refused, Reconstructed(refused.revision, Refused("the axis has no length")))
+    assert hint(refused) == "The axis has no length."
+    assert hint(step(refused, HandleMoved("axis", 1, (160.0, 250.0)))).startswith("Measuring")
+    dragged = HandleMoved("axis", 1, (160.0, 250.0), finished=False)
+    assert hint(step(refused, dragged)) == hint(step(measured[0], dragged)), "it does not flicker during a drag"
+
+
 def test_a_section_is_taken_out_and_put_back_and_forgotten_with_the_drawing(
     measured: tuple[Session, Reconstruction],
 ) -> None:

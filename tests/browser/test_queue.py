@@ -1,4 +1,4 @@
-"""The one queue: a newer drawing overtakes, one measurement at a time, and a long one is seen to be under way."""
+"""The one queue: a newer drawing overtakes, what is under way is seen to be, and nothing ends the console."""
 
 from collections.abc import Callable, Iterator
 from threading import Event as Gate
@@ -10,7 +10,9 @@ import app.console
 from app.bench.wire import WirePage
 from app.console import Console, FromPage, PageClosed, PageOpened
 from app.events import Event, HandleMoved, PointerDragged, Refused
+from app.hints import hint
 from app.measuring import measure
+from app.session import Session
 from rotrecon.drawing import Drawing
 from rotrecon.frame import Frame
 from rotrecon.settings import Settings
@@ -87,6 +89,7 @@ def test_the_newest_drawing_does_not_wait_for_an_older_one(console: Console, slo
 
 def test_no_more_than_two_measurements_are_under_way(console: Console, slow: SlowMeasure) -> None:
     post(console, AREA, AXIS)
+    assert slow.started.wait(WAIT_S)
     for n in range(1, 5):
         post(console, HandleMoved("axis", 1, (100.0 + n, 190.0)))
         until(lambda: len(slow.drawings) == 2)
@@ -97,23 +100,22 @@ def test_no_more_than_two_measurements_are_under_way(console: Console, slow: Slo
     assert slow.drawings[-1].axis.end_px == (104.0, 190.0)
 
 
-def test_a_long_measurement_is_shown_while_it_lasts(
+def test_a_measurement_is_shown_while_it_lasts(
     console: Console, slow: SlowMeasure, monkeypatch: pytest.MonkeyPatch
 ) -> None:
-    shown = Gate()
+    hints: list[str] = []
     show = console.panels.show
 
-    def watch(session: object, measuring: bool) -> None:
-        show(console.session, measuring)
-        if measuring:
-            shown.set()
+    def watch(session: Session) -> None:
+        show(session)
+        hints.append(hint(session))
 
     monkeypatch.setattr(console.panels, "show", watch)
     post(console, AREA, AXIS)
-    assert shown.wait(WAIT_S)
+    until(lambda: any("Measuring" in text for text in hints))
     slow.end()
     console.wait_until_idle(WAIT_S)
-    assert console.session.up_to_date
+    assert "Measured 1." in hints[-1]
 
 
 def test_the_programs_own_mistake_is_told_and_not_the_end(
@@ -144,7 +146,7 @@ def test_the_console_survives_pages_that_close_while_they_are_built(
     post(console, AREA, AXIS)
     console.wait_until_idle(WAIT_S)
     assert console.session.up_to_date
-    assert not caplog.records
+    assert not [record for record in caplog.records if record.name == "app.console"]
 
 
 def test_a_page_that_closes_before_it_is_built_does_not_stay(console: Console) -> None:
