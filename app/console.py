@@ -49,7 +49,12 @@ class FromPage:
     event: Event | PageEvent
 
 
-Item = PageOpened | PageClosed | CameraMoved | FromPage | Reconstructed
+@dataclass(frozen=True)
+class Stopped:
+    """The console is to be closed; whatever else is on the queue is dropped."""
+
+
+Item = PageOpened | PageClosed | CameraMoved | FromPage | Reconstructed | Stopped
 
 
 class Console:
@@ -105,8 +110,9 @@ class Console:
         self.server.on_client_disconnect(self._page_closed)
 
     def stop(self) -> None:
-        """Close the server and every page."""
-        self._running.cancel()
+        """Close the server and every page, when what is being shown is shown; measurements are given up."""
+        self._loop.call_soon_threadsafe(self.post, Stopped())
+        self._running.result()
         with redirect_stdout(io.StringIO()):
             self.server.stop()
 
@@ -129,6 +135,8 @@ class Console:
             items = [await self._queue.get()]
             while not self._queue.empty():
                 items.append(self._queue.get_nowait())
+            if Stopped() in items:
+                break
             for item in items:
                 with _logged("what happened was not taken in"):
                     self._take(item)
@@ -137,6 +145,9 @@ class Console:
             self.server.flush()
             if self._queue.empty() and not self._measuring:
                 self._settled.set()
+        for task in self._measuring.values():
+            task.cancel()
+        await asyncio.gather(*self._measuring.values(), return_exceptions=True)
 
     def _take(self, item: Item) -> None:
         match item:
@@ -153,7 +164,7 @@ class Console:
             case PageClosed(client_id):
                 self._opened.pop(client_id, None)
                 self.pages.pop(client_id, None)
-            case CameraMoved():
+            case CameraMoved() | Stopped():
                 pass
 
     def _measure_latest(self) -> None:

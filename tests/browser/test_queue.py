@@ -1,5 +1,7 @@
 """The one queue: a newer drawing overtakes, what is under way is seen to be, and nothing ends the console."""
 
+import asyncio
+import gc
 from collections.abc import Callable, Iterator
 from threading import Event as Gate
 from time import monotonic, sleep
@@ -16,6 +18,7 @@ from app.session import Session
 from rotrecon.drawing import Drawing
 from rotrecon.frame import Frame
 from rotrecon.settings import Settings
+from rotrecon.simulation.simulate import Simulated
 
 WAIT_S = 10.0
 
@@ -131,6 +134,23 @@ def test_the_programs_own_mistake_is_told_and_not_the_end(
     assert console.session.notice is not None
     assert "its own mistake" in console.session.notice.text
     assert "ZeroDivisionError" in caplog.text
+
+
+def test_closing_the_console_leaves_nothing_running(
+    scene: Simulated, slow: SlowMeasure, caplog: pytest.LogCaptureFixture
+) -> None:
+    console = Console(scene.frame, "A pipe", Settings(), port=0, cloud_points=10)
+    console.start()
+    loop = console.server.get_event_loop()
+    post(console, AREA, AXIS)
+    assert slow.started.wait(WAIT_S)
+    console.stop()
+    assert loop.is_closed()
+    assert not asyncio.all_tasks(loop)
+    slow.end()
+    del console, loop
+    gc.collect()
+    assert not caplog.records
 
 
 @pytest.mark.filterwarnings("ignore:Queued a .* on a closed connection")
