@@ -3,11 +3,13 @@
 import socket
 
 import numpy as np
+import pytest
 from playwright.sync_api import Browser, expect
 
 from app.console import Console
 from app.events import Event, PointerDragged, PolygonClosed, VertexClicked
-from app.serving import announcements
+from app.host import HostError, check_host
+from app.serving import announcements, serve
 from rotrecon.overlay import section_pixels
 from rotrecon.settings import Settings
 from rotrecon.simulation.simulate import Simulated
@@ -130,6 +132,19 @@ def test_sharing_is_refused_and_not_offered(operator: Operator) -> None:
     assert operator.console.server.request_share_url() is None
     expect(operator.page.get_by_label("Share")).to_have_count(0)
     assert operator.console.server._share_tunnel is None
+
+
+@pytest.mark.parametrize("host", ["nonsense.invalid", "192.0.2.1", "2001:db8::1", "", "..", "a" * 80, "1 2", "\0"])
+def test_a_host_that_is_not_this_machines_is_refused_at_once(host: str, scene: Simulated) -> None:
+    with pytest.raises(HostError) as refused:
+        serve(scene.frame, "A pipe", Settings(), host, announce=lambda line: None)
+    assert repr(host) in str(refused.value)
+    assert "leave --host out" in str(refused.value)
+
+
+@pytest.mark.parametrize("host", ["127.0.0.1", "localhost", "0.0.0.0"])
+def test_a_host_of_this_machine_is_taken(host: str) -> None:
+    check_host(host)
 
 
 def test_the_server_listens_on_loopback_only_and_says_so_when_not(scene: Simulated) -> None:
