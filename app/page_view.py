@@ -23,7 +23,7 @@ from app.panels import Panels
 from app.pictures import Pictures
 from app.pointer import PixelFinder
 from app.scene_view import SceneView
-from app.session import Session
+from app.session import Notice, Session
 from rotrecon.reconstruct import Reconstruction
 
 NOTICE_SECONDS = 10.0
@@ -51,7 +51,7 @@ class PageView:
         self._lit: object = None
         self._view = ""
         self._dark = True
-        self._notice_number = 0
+        self._notice: Notice | None = None
         self._notification: NotificationHandle | None = None
         self._world_pose: tuple[np.ndarray, ...] | None = None
         picture = self._camera_view.picture
@@ -123,14 +123,16 @@ class PageView:
             self._camera_view.picture.image = self._pictures.camera_view(result, opacity, section)
 
     def _show_notice(self, session: Session) -> None:
-        notice = session.notice
-        if self._notification is not None and session.told_revision != session.revision:
+        """Tell of a failure, and take that away when it is no longer one of what is shown."""
+        if session.notice == self._notice:
+            return
+        if self._notification is not None:
             self._notification.remove()
             self._notification = None
-        if notice is not None and notice.number > self._notice_number:
-            self._notice_number = notice.number
+        self._notice = session.notice
+        if self._notice is not None:
             self._notification = self.client.add_notification(
-                notice.title, notice.text, color="orange", auto_close_seconds=NOTICE_SECONDS
+                self._notice.title, self._notice.text, color="orange", auto_close_seconds=NOTICE_SECONDS
             )
 
     async def _clicked(self, event: SceneNodePointerEvent) -> None:

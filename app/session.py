@@ -42,9 +42,9 @@ class Measured:
 
 @dataclass(frozen=True)
 class Notice:
-    """Something the operator has to be told once."""
+    """Something the operator has to be told once about the drawing of one revision."""
 
-    number: int
+    revision: int
     title: str
     text: str
 
@@ -68,9 +68,8 @@ class Session:
     """Grows with every change of what is shown."""
     measured: Measured | None = None
     """The latest measurement; until a new one is there, that of an earlier revision."""
-    told_revision: int = -1
-    """The revision whose failure the operator has been told."""
     notice: Notice | None = None
+    """The failure to measure what is shown; gone as soon as that changes."""
 
     @property
     def shown(self) -> ObjectDrawing:
@@ -94,7 +93,7 @@ def step(session: Session, event: Event) -> Session:
     """The session after an event; an event that makes no sense leaves it as it is."""
     after = _applied(session, event)
     if after.shown != session.shown:
-        after = replace(after, revision=session.revision + 1)
+        after = replace(after, revision=session.revision + 1, notice=None)
         if after.shown.complete is None:
             after = replace(after, measured=None)
     return _told(after)
@@ -210,9 +209,9 @@ def _reconstructed(session: Session, event: Reconstructed) -> Session:
 def _told(session: Session) -> Session:
     """The session with a notice of a failure, once a revision and not in the middle of a drag."""
     measured = session.measured
-    if session.preview is not None or measured is None or measured.revision != session.revision:
+    if measured is None or measured.revision != session.revision:
         return session
-    if session.told_revision == session.revision:
+    if session.preview is not None or session.notice is not None:
         return session
     match measured.outcome:
         case Refused(reason):
@@ -221,8 +220,7 @@ def _told(session: Session) -> Session:
             title, text = "Nothing could be fitted", sentence(advice)
         case _:
             return session
-    number = 1 if session.notice is None else session.notice.number + 1
-    return replace(session, told_revision=session.revision, notice=Notice(number, title, text))
+    return replace(session, notice=Notice(session.revision, title, text))
 
 
 def _drawn(session: Session, drawn: ObjectDrawing, finished: bool) -> Session:

@@ -175,6 +175,20 @@ def test_a_refusal_is_told_once_a_revision_and_not_during_a_drag() -> None:
     assert again.notice == released.notice
 
 
+def test_a_notice_goes_with_the_drawing_it_is_about() -> None:
+    session = after(AREA, AXIS)
+    session = step(session, Reconstructed(session.revision, Refused("the axis has no length")))
+    told = session.notice
+    assert told is not None
+    assert step(session, ToolChosen("axis")).notice is told
+    moved = step(session, HandleMoved("axis", 1, (160.0, 250.0)))
+    assert moved.notice is None
+    again = step(moved, Reconstructed(moved.revision, Refused("the axis has no length"))).notice
+    assert again is not None
+    assert again != told, "it is told once more"
+    assert step(session, Undone()).notice is None
+
+
 def test_the_hint_tells_of_a_measurement_only_when_it_is_one_of_the_drawing_shown(
     measured: tuple[Session, Reconstruction],
 ) -> None:
