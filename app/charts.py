@@ -1,5 +1,6 @@
 """The chart of radii along the axis."""
 
+from collections.abc import Sequence
 from typing import Any
 
 import numpy as np
@@ -9,9 +10,11 @@ from rotrecon.circles import SectionState
 from rotrecon.fitting import Fit
 from rotrecon.reconstruct import Reconstruction
 
-USED, ODD, EXCLUDED, PROFILE, LIT = "#3c93d0", "#d55e00", "#8a8a8a", "#009e73", "#cc79a7"
+USED, ODD, EXCLUDED, PROFILE, MISSING, LIT = "#3c93d0", "#d55e00", "#8a8a8a", "#009e73", "#e69f00", "#cc79a7"
 """Okabe and Ito's colours, which the colour-blind tell apart, as light and dark backgrounds allow."""
 CHART_HEIGHT_PX = 132
+BOTTOM = 0.04
+"""How far up the chart sections without a circle stand: high enough to be seen whole."""
 
 
 def _dots(label: str, color: str, size_px: float) -> dict[str, Any]:
@@ -25,13 +28,14 @@ RADIUS_SERIES: tuple[Any, ...] = (
     _dots("used", USED, 4),
     _dots("odd radius", ODD, 4),
     _dots("excluded", EXCLUDED, 5),
+    _dots("no circle", MISSING, 4),
     _dots("this section", LIT, 10),
 )
 RADIUS_AXES: tuple[Any, ...] = (
     {"size": 34},
     {"label": "radius, mm", "labelSize": 16, "size": 48, "labelFont": "12px sans-serif"},
 )
-NO_CHART: tuple[Floats, ...] = tuple(np.array([0.0, 1.0]) * scale for scale in (1.0, *[np.nan] * 5))
+NO_CHART: tuple[Floats, ...] = tuple(np.array([0.0, 1.0]) * scale for scale in (1.0, *[np.nan] * 6))
 
 
 def section_count(result: Reconstruction | None) -> int:
@@ -40,28 +44,49 @@ def section_count(result: Reconstruction | None) -> int:
 
 
 def radius_chart(result: Reconstruction | None, section: int) -> tuple[Floats, ...]:
-    """Columns of the chart: position and radius, mm, NaN where a section is not of the series."""
-    if result is None or result.second_cut is None or not isinstance(result.fit, Fit):
+    """Columns of the chart: position and radius, mm, NaN where a section is not of the series.
+
+    Sections without a circle have no radius; they stand in a row at the bottom.
+    """
+    if result is None or result.second_cut is None or result.sections is None:
         return NO_CHART
-    radius_mm, along_mm = 1000 * result.second_cut.circles.radius_m, 1000 * result.fit.along_m
+    circles, fit = result.second_cut.circles, result.fit
+    along_m = fit.along_m if isinstance(fit, Fit) else result.sections.axis.along(circles.points_m[:, 1])
+    along_mm, radius_mm = 1000 * _evenly(along_m), 1000 * circles.radius_m
     order = np.argsort(along_mm)
-    order = order[np.isfinite(along_mm[order])]
-    if len(order) < 2:
+    if len(order) < 2 or not np.isfinite(along_mm).all():
         return NO_CHART
-    state = result.fit.section_state
-    fitted_mm = 1000 * result.fit.solid.radius_at(result.fit.along_m)
+    state = fit.section_state if isinstance(fit, Fit) else circles.state
+    fitted_mm = 1000 * fit.solid.radius_at(along_mm / 1000) if isinstance(fit, Fit) else np.full(len(state), np.nan)
     shown = [SectionState.USED, SectionState.ODD_RADIUS, SectionState.EXCLUDED]
     columns = [along_mm, fitted_mm, *(np.where(state == kind, radius_mm, np.nan) for kind in shown)]
-    columns.append(np.where(np.arange(len(state)) == section, radius_mm, np.nan))
+    low, high = _radius_range(columns)
+    missing = np.where(np.isfinite(radius_mm), np.nan, low + BOTTOM * (high - low))
+    lit = np.where(np.isfinite(radius_mm), radius_mm, missing)
+    columns += [missing, np.where(np.arange(len(state)) == section, lit, np.nan)]
     return tuple(column[order] for column in columns)
 
 
+def _evenly(along_m: Floats) -> Floats:
+    """Positions (S,) of sections with those that are not known put in, as sections lie evenly; NaN if none can be."""
+    number, known = np.arange(len(along_m)), np.isfinite(along_m)
+    if known.sum() < 2:
+        return np.full(len(along_m), np.nan)
+    line = np.polyfit(number[known], along_m[known], 1)
+    return np.where(known, along_m, np.polyval(line, number))
+
+
 def radius_scales(chart: tuple[Floats, ...]) -> dict[str, Any]:
-    """Ranges that hold everything, with a margin; the radius never magnified so far that noise looks like shape."""
-    radii = np.concatenate(chart[1:5])
+    """Ranges of the chart's axes."""
+    return {"x": {"time": False}, "y": {"range": _radius_range(chart)}}
+
+
+def _radius_range(columns: Sequence[Floats]) -> tuple[float, float]:
+    """What holds all radii, with a margin; never magnified so far that noise looks like shape."""
+    radii = np.concatenate(columns[1:5])
     radii = radii[np.isfinite(radii)]
     if len(radii) == 0:
-        return {"x": {"time": False}, "y": {"range": (0.0, 1.0)}}
+        return (0.0, 1.0)
     low, high = np.percentile(radii, [2, 98])
     margin = max(0.6 * (high - low), 0.1 * high, 1.0)
-    return {"x": {"time": False}, "y": {"range": (max(0.0, float(low - margin)), float(high + margin))}}
+    return (max(0.0, float(low - margin)), float(high + margin))

@@ -1,0 +1,74 @@
+"""The chart of radii: every section is on it, with a circle or without, whatever came of the fit."""
+
+from dataclasses import replace
+
+import numpy as np
+import pytest
+
+from app.charts import NO_CHART, RADIUS_SERIES, radius_chart, radius_scales
+from rotrecon.circles import SectionCircles, SectionState
+from rotrecon.fitting import FailureReason, Fit, FitFailure
+from rotrecon.reconstruct import Cut, Reconstruction, reconstruct
+from rotrecon.settings import Settings
+from rotrecon.simulation.simulate import simulate
+
+ALONG, FITTED, USED, ODD, EXCLUDED, NO_CIRCLE, LIT = range(len(RADIUS_SERIES))
+REFUSAL = FitFailure(FailureReason.NOT_ROUND, "draw anew")
+
+
+@pytest.fixture(scope="module")
+def fitted() -> Reconstruction:
+    scene = simulate("pipe", 0, noise=None)
+    return reconstruct(scene.frame, scene.drawing, Settings())
+
+
+def without_circles(result: Reconstruction, sections: list[int], points: bool) -> Reconstruction:
+    """A refusal, some of whose sections have no circle, and perhaps no points either."""
+    cut = result.second_cut
+    assert cut is not None
+    circles = cut.circles
+    state, radius_m, center_m = circles.state.copy(), circles.radius_m.copy(), circles.center_m.copy()
+    points_m = circles.points_m.copy()
+    state[sections] = SectionState.COLLINEAR if points else SectionState.EMPTY
+    radius_m[sections] = np.nan
+    center_m[sections] = np.nan
+    if not points:
+        points_m[sections] = np.nan
+    circles = SectionCircles(state, center_m, radius_m, points_m, circles.arc_rad, circles.concave)
+    return replace(result, fit=REFUSAL, second_cut=Cut(circles, cut.axis))
+
+
+def test_a_refusal_shows_the_radii_it_has_and_no_fitted_line(fitted: Reconstruction) -> None:
+    with_fit, refused = radius_chart(fitted, 3), radius_chart(replace(fitted, fit=REFUSAL), 3)
+    assert isinstance(fitted.fit, Fit)
+    assert np.isfinite(with_fit[FITTED]).all()
+    assert np.isnan(refused[FITTED]).all()
+    assert np.isfinite(refused[USED]).sum() >= np.isfinite(with_fit[USED]).sum() > 0
+    assert np.allclose(np.diff(refused[ALONG]), np.diff(with_fit[ALONG]), atol=1)
+    assert np.isfinite(refused[LIT]).sum() == 1
+
+
+@pytest.mark.parametrize("points", [True, False])
+def test_sections_without_a_circle_stand_at_the_bottom_where_they_belong(fitted: Reconstruction, points: bool) -> None:
+    missing = [20, 25, 26]
+    whole, chart = (radius_chart(without_circles(fitted, sections, points), 25) for sections in ([], missing))
+    marked = np.flatnonzero(np.isfinite(chart[NO_CIRCLE]) & np.isnan(whole[NO_CIRCLE]))
+    assert marked.tolist() == missing
+    assert np.allclose(chart[ALONG], whole[ALONG], atol=1)
+    assert np.isnan(chart[USED][missing]).all()
+    low, high = radius_scales(chart)["y"]["range"]
+    assert (chart[NO_CIRCLE][missing] < low + 0.1 * (high - low)).all()
+    assert (chart[NO_CIRCLE][missing] > low).all()
+    assert chart[LIT][25] == chart[NO_CIRCLE][25]
+
+
+def test_without_a_single_circle_every_section_is_still_marked(fitted: Reconstruction) -> None:
+    count = len(fitted.second_cut.circles.state) if fitted.second_cut else 0
+    chart = radius_chart(without_circles(fitted, list(range(count)), points=True), 0)
+    assert np.isfinite(chart[NO_CIRCLE]).all()
+    assert radius_chart(without_circles(fitted, list(range(count)), points=False), 0) is NO_CHART
+
+
+def test_there_is_no_chart_without_a_second_cut(fitted: Reconstruction) -> None:
+    assert radius_chart(None, 0) is NO_CHART
+    assert radius_chart(replace(fitted, fit=REFUSAL, sections=None, second_cut=None), 0) is NO_CHART
