@@ -19,7 +19,7 @@ from app.events import Event, SectionToggled
 from app.page import LAYERS, DarkChosen, LayerChosen, OpacityChosen, PageEvent, PageState, SectionChosen
 from app.panels import Panels
 from app.pictures import Pictures
-from app.section_drawing import section_svg, section_text
+from app.section_drawing import line_text, section_svg, section_text
 from rotrecon.overlay import LIGHT_BLUE, NAVY, RED, YELLOW
 from rotrecon.reconstruct import Reconstruction
 
@@ -78,9 +78,10 @@ class PagePanels:
         for part in (self._chart, self._slider, self._exclude):
             part.visible = count > 0
         self._exclude.label = "Put this section back" if section in excluded else "Exclude this section"
-        text = escape(section_text(result, section))
+        text, line = escape(section_text(result, section)), escape(line_text(result, section))
         self._plane.content = (
             f'<div class="rr-caption" data-testid="section">{text}</div>{section_svg(result, section)}'
+            f'<div class="rr-caption" data-testid="line">{line}</div>'
         )
 
     def _add_sections(self) -> None:

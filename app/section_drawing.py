@@ -6,6 +6,7 @@ from app.charts import LIT, ODD, PROFILE, USED, section_count
 from rotrecon.arrays import Floats
 from rotrecon.circles import SectionState
 from rotrecon.fitting import Fit
+from rotrecon.overlay import first_cut_line
 from rotrecon.reconstruct import Reconstruction
 
 STATE_TEXT = {
@@ -23,8 +24,10 @@ MOST_DOTS = 300
 def section_text(result: Reconstruction | None, section: int) -> str:
     """One section in words."""
     count = section_count(result)
-    if result is None or result.second_cut is None or section >= count:
+    if result is None:
         return "No sections yet."
+    if result.second_cut is None or section >= count:
+        return "No sections: the lines of pixels gave no axis to cut the object across."
     state = result.fit.section_state if isinstance(result.fit, Fit) else result.second_cut.circles.state
     radius_mm = 1000 * float(result.second_cut.circles.radius_m[section])
     place = f"Section {section + 1} of {count}, {STATE_TEXT[SectionState(state[section])]}"
@@ -33,6 +36,17 @@ def section_text(result: Reconstruction | None, section: int) -> str:
     residuals_mm = 1000 * result.sections.residuals_m(section, result.second_cut.circles)
     off_mm = float(np.sqrt(np.mean(residuals_mm**2)))
     return f"{place}. Radius {radius_mm:.1f} mm; its {len(residuals_mm)} pixels lie {off_mm:.2f} mm off (RMS)."
+
+
+def line_text(result: Reconstruction | None, section: int) -> str:
+    """What each step of paper 3.2 did on the line of pixels that a section was made of; nothing if it has none."""
+    row = None if result is None or section >= section_count(result) else first_cut_line(result, section)
+    if result is None or row is None:
+        return ""
+    segmentation = result.segmentation
+    mean_mm, sigma_mm = 1000 * segmentation.mean_m[-1, row], 1000 * segmentation.sigma_m[-1, row]
+    steps = ", ".join(f"{count} {step}" for step, count in segmentation.counts(row).items())
+    return f"On its line of pixels: {steps}; mean depth {mean_mm:.1f} mm, sigma {sigma_mm:.1f} mm."
 
 
 def section_svg(result: Reconstruction | None, section: int) -> str:
