@@ -5,6 +5,7 @@ from numpy.typing import NDArray
 from viser import ClientHandle, SceneNodePointerEvent, ViserServer
 from viser import transforms as tf
 
+from app.limit_lines import limit_lines
 from app.page import SectionPointed
 from app.panels import Post
 from rotrecon.arrays import Bytes, Floats, Indices
@@ -21,8 +22,6 @@ SECTION_COLOR, LIMITS_COLOR, FRUSTUM_COLOR = (204, 121, 167), (230, 159, 0), (15
 OBJECT_POINTS = 10_000
 """As many of the segmented points as anybody can tell apart."""
 SOLID_OPACITY = 0.45
-CORNERS = np.array([[x, y, z] for x in (0, 1) for y in (0, 1) for z in (0, 1)])
-EDGES = [(a, b) for a in range(8) for b in range(a + 1, 8) if np.abs(CORNERS[a] - CORNERS[b]).sum() == 1]
 
 
 class SceneView:
@@ -38,10 +37,10 @@ class SceneView:
         self._add_camera(picture)
         size_m = 0.1 * self._depth_m
         self._scene.add_frame("/world/base", axes_length=size_m, axes_radius=size_m / 25)
-        if frame.workspace.box_m is not None:
-            low, high = frame.workspace.box_m
-            box = (low + CORNERS * (high - low))[np.array(EDGES)]
-            self._scene.add_line_segments("/world/limits", box, LIMITS_COLOR, thickness=1.5, thickness_units="screen")
+        for limit, lines in limit_lines(frame.workspace, frame.camera, frame.T_base_camera).items():
+            self._scene.add_line_segments(
+                f"/world/limits/{limit}", lines, LIMITS_COLOR, thickness=1.5, thickness_units="screen"
+            )
         self._object = self._scene.add_point_cloud(
             "/world/object",
             np.zeros((1, 3)),
