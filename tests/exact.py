@@ -1,12 +1,16 @@
 """Frames whose depth is exact: one solid before a wall, ray-cast."""
 
+from dataclasses import replace
+
 import numpy as np
 
 from rotrecon.arrays import Floats
 from rotrecon.camera import PinholeCamera
 from rotrecon.drawing import AreaOfInterest, Drawing, ObjectAxis
+from rotrecon.fitting import Fit
 from rotrecon.frame import Frame
 from rotrecon.primitives import Frustum, Kind, Primitive, Sphere, basis_across
+from rotrecon.reconstruct import Reconstruction
 from rotrecon.simulation.raycast import first_hit
 
 CAMERA = PinholeCamera(320, 240, np.array([[400.0, 0, 159.5], [0, 400.0, 119.5], [0, 0, 1]]))
@@ -48,3 +52,18 @@ def drawing_along(
     limit = np.array([camera.width - 1, camera.height - 1])
     vertices = tuple((float(u), float(v)) for u, v in np.clip(corners, 0, limit))
     return Drawing(AreaOfInterest(vertices), ObjectAxis(tuple(map(float, start)), tuple(map(float, end))), kind)
+
+
+def measured(result: Reconstruction) -> Fit:
+    assert isinstance(result.fit, Fit), result.fit
+    return result.fit
+
+
+def direction_of(tilt_deg: float, roll_deg: float) -> np.ndarray:
+    tilt, roll = np.deg2rad([tilt_deg, roll_deg])
+    return np.array([np.cos(tilt) * np.cos(roll), np.cos(tilt) * np.sin(roll), np.sin(tilt)])
+
+
+def noisy(frame: Frame, seed: int, sigma_m: float = 0.001) -> Frame:
+    depth = frame.depth_m + np.random.default_rng(seed).normal(0, sigma_m, frame.depth_m.shape)
+    return replace(frame, points_m=frame.camera.cloud(depth))

@@ -1,0 +1,107 @@
+"""What a reconstruction ends in: a refusal with its reason, a solid of a kind, a tool or none."""
+
+from dataclasses import replace
+
+import numpy as np
+import pytest
+
+from rotrecon.circles import SectionState
+from rotrecon.drawing import AreaOfInterest, Drawing, DrawingError, ObjectAxis
+from rotrecon.fitting import FailureReason, FitFailure
+from rotrecon.frame import Frame
+from rotrecon.reconstruct import reconstruct
+from rotrecon.settings import Settings
+from rotrecon.tools import NoTool, ToolProposal
+from rotrecon.workspace import Workspace
+from tests.exact import CAMERA, cylinder, direction_of, drawing_along, exact_frame, measured, noisy
+
+PAPER = Settings()
+
+
+@pytest.mark.parametrize("kind", ["sphere", "cone"])
+def test_a_kind_that_the_sections_speak_against_is_refused(kind):
+    solid = cylinder(np.array([0.05, 0, 0.8]), direction_of(20, 70), 0.06)
+    result = reconstruct(noisy(exact_frame(solid), 2), drawing_along(solid, kind=kind), PAPER)
+    assert isinstance(result.fit, FitFailure)
+    assert result.fit.reason is FailureReason.NOT_THIS_KIND
+    assert "cylinder" in result.fit.advice
+    assert result.solid is None
+
+
+def test_wall_alone_is_flat_and_never_a_solid():
+    frame = noisy(Frame(np.zeros((240, 320, 3), np.uint8), CAMERA.cloud(np.full((240, 320), 1.0)), CAMERA), 3)
+    drawing = Drawing(AreaOfInterest.rectangle((100, 60), (220, 180)), ObjectAxis((160, 70), (160, 170)))
+    fit = reconstruct(frame, drawing, PAPER).fit
+    assert isinstance(fit, FitFailure)
+    assert fit.reason in (FailureReason.FLAT, FailureReason.TOO_FEW_SECTIONS, FailureReason.NO_AXIS)
+
+
+def test_what_the_arm_cannot_reach_is_refused_with_the_reason():
+    solid = cylinder(np.array([0, 0, 0.8]), direction_of(0, 90), 0.06)
+    frame = replace(exact_frame(solid), workspace=Workspace(depth_m=(0.1, 0.5)))
+    fit = reconstruct(frame, drawing_along(solid), PAPER).fit
+    assert isinstance(fit, FitFailure)
+    assert fit.reason is FailureReason.OUT_OF_REACH
+
+
+def test_points_outside_the_workspace_are_in_no_section():
+    solid = cylinder(np.array([0, 0, 0.8]), direction_of(0, 90), 0.06)
+    near = replace(exact_frame(solid), workspace=Workspace(depth_m=(0.1, 1.5)))
+    result = reconstruct(near, drawing_along(solid), PAPER)
+    assert measured(result).solid.radius_m == pytest.approx(0.03, rel=1e-3)
+    assert not (result.segmentation.kept & (near.depth_m.ravel()[result.segments.pixel] > 1.5)).any()
+
+
+def test_area_without_depth_is_a_drawing_error():
+    frame = Frame(np.zeros((240, 320, 3), np.uint8), CAMERA.cloud(np.full((240, 320), np.nan)), CAMERA)
+    drawing = Drawing(AreaOfInterest.rectangle((100, 60), (220, 180)), ObjectAxis((160, 70), (160, 170)))
+    with pytest.raises(DrawingError, match="no depth"):
+        reconstruct(frame, drawing, PAPER)
+
+
+def test_excluded_sections_do_not_count_and_keep_their_numbers():
+    solid = cylinder(np.array([0, 0, 0.8]), direction_of(0, 90), 0.06)
+    frame, drawing = noisy(exact_frame(solid), 5), drawing_along(solid, kind="cylinder")
+    excluded = frozenset({3, 4, 60})
+    plain = reconstruct(frame, drawing, PAPER)
+    less = reconstruct(frame, replace(drawing, excluded_sections=excluded), PAPER)
+    states = measured(less).section_state
+    assert {int(s) for s in np.flatnonzero(states == SectionState.EXCLUDED)} == excluded
+    assert plain.sections is not None
+    assert less.sections is not None
+    assert np.array_equal(plain.sections.start, less.sections.start)
+
+
+def test_thin_cylinder_is_a_rod_and_goes_to_the_clipper_and_a_thick_one_to_the_cutter():
+    thin = cylinder(np.array([0, 0, 0.6]), direction_of(0, 90), 0.02, 0.3)
+    thick = cylinder(np.array([0, 0, 0.8]), direction_of(0, 90), 0.06, 0.3)
+    for solid, kind, tool in ((thin, "rod", "clipper"), (thick, "cylinder", "mechanical cutter")):
+        result = reconstruct(exact_frame(solid), drawing_along(solid), PAPER)
+        assert result.solid is not None
+        assert result.solid.kind == kind
+        assert isinstance(result.tool, ToolProposal)
+        assert result.tool.tool.name == tool
+
+
+def test_contact_lies_on_the_surface_and_the_approach_is_square_to_the_axis():
+    solid = cylinder(np.array([0.05, 0, 0.8]), direction_of(30, 80), 0.06)
+    result = reconstruct(exact_frame(solid), drawing_along(solid), PAPER)
+    assert isinstance(result.tool, ToolProposal)
+    assert result.solid is not None
+    assert abs(float(result.solid.distance(result.tool.contact_point_m))) < 1e-9
+    assert abs(result.tool.approach @ result.solid.direction) < 1e-9
+    assert result.tool.approach[2] > 0, "away from the camera"
+
+
+def test_surface_seen_from_inside_is_concave_and_gets_no_tool():
+    u, v = np.meshgrid(np.arange(320), np.arange(240))
+    rays = CAMERA.unproject(np.stack([u, v], axis=-1), np.ones(u.shape))
+    # a pipe of radius 0.25 m round an axis along y, 0.3 m ahead: its far wall is 0.55 m away
+    a, b, c = rays[..., 0] ** 2 + 1, -0.3, 0.3**2 - 0.25**2
+    depth = (-b + np.sqrt(b**2 - a * c)) / a
+    frame = Frame(np.zeros((240, 320, 3), np.uint8), CAMERA.cloud(depth), CAMERA)
+    drawing = Drawing(AreaOfInterest.rectangle((60, 60), (260, 180)), ObjectAxis((160, 70), (160, 170)), "cylinder")
+    result = reconstruct(frame, drawing, replace(PAPER, layers=1))
+    assert measured(result).concave
+    assert measured(result).solid.radius_m == pytest.approx(0.25, rel=1e-3)
+    assert isinstance(result.tool, NoTool)
