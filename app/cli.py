@@ -9,6 +9,7 @@ import typer
 
 from app.describe import describe, describe_result
 from app.drawing_text import parse_area, parse_axis
+from app.host import HostError
 from rotrecon.answer import answer, cannot
 from rotrecon.drawing import Drawing, DrawingError
 from rotrecon.errors import SceneError
@@ -46,7 +47,7 @@ def main() -> None:
     """Run the command; bad input is one sentence on stderr and exit code 2."""
     try:
         cli()
-    except (SceneError, DrawingError, ToolTableError) as error:
+    except (SceneError, DrawingError, ToolTableError, HostError) as error:
         typer.echo(f"rotrecon: {error}", err=True)
         sys.exit(BAD_INPUT)
 

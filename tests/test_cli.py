@@ -178,3 +178,11 @@ def test_serve_refuses_views_with_their_reason(rotrecon):
     code, _, err = rotrecon("serve", recording("virtual_stereo"))
     assert code == 3
     assert "needs stereo matching" in err
+
+
+def test_serve_refuses_a_host_that_is_not_this_machine(rotrecon, scene):
+    for host in ("nonsense.invalid", "203.0.113.5"):
+        code, _, err = rotrecon("serve", scene, "--host", host)
+        assert code == 2
+        assert host in err
+        assert err.count("\n") == 1
