@@ -57,8 +57,10 @@ def fit(
     scene: Scene,
     area: Annotated[str, typer.Option(help='Corners "u,v u,v" of a rectangle, or of a polygon if more, px.')],
     axis: Annotated[str, typer.Option(help='A stroke "u,v u,v" along the object, px.')],
-    kind: Annotated[Literal["auto", "cylinder", "rod", "sphere", "cone"], typer.Option()] = "auto",
-    method: Annotated[Method, typer.Option()] = "paper",
+    kind: Annotated[
+        Literal["auto", "cylinder", "rod", "sphere", "cone"], typer.Option(help="What it is, if you know.")
+    ] = "auto",
+    method: Annotated[Method, typer.Option(help="How it is measured.")] = "paper",
     tools: ToolFile = None,
     json_: Annotated[bool, typer.Option("--json", help="Print one JSON object.")] = False,
     overlay: Annotated[Path | None, typer.Option(metavar="OUT.png", help="Write the frame with the result.")] = None,
@@ -103,7 +105,7 @@ def _write(path: Path, what: str, content: bytes) -> None:
 def serve(
     scene: Annotated[Path | None, typer.Argument(metavar="[SCENE]", help="A scene folder; without: a demo.")] = None,
     host: Annotated[str, typer.Option(help="Address to listen on.")] = "127.0.0.1",
-    port: Annotated[int, typer.Option(min=1, max=65535)] = 8080,
+    port: Annotated[int, typer.Option(min=1, max=65535, help="The next free one if it is taken.")] = 8080,
     tools: ToolFile = None,
     layers: Layers = 2,
 ) -> None:
@@ -127,12 +129,17 @@ def _demo() -> Capture:
 @cli.command()
 def simulate(
     out: Annotated[Path, typer.Argument(metavar="OUT", help="The scene folder to write.")],
-    object_: Annotated[Literal["leg", "ball", "wire", "pipe", "cone"], typer.Option("--object")] = DEMO,
-    seed: Annotated[int, typer.Option(min=0)] = 0,
+    object_: Annotated[
+        Literal["leg", "ball", "wire", "pipe", "cone"], typer.Option("--object", help="What stands in it.")
+    ] = DEMO,
+    seed: Annotated[int, typer.Option(min=0, help="Another one gives another pose.")] = 0,
 ) -> None:
     """Write a scene whose truth is known, and the truth beside it."""
-    write_simulated(out, simulate_object(object_, seed))
-    typer.echo(f"wrote {out}; its truth is in {out / TRUTH_FILE}")
+    simulated = simulate_object(object_, seed)
+    write_simulated(out, simulated)
+    typer.echo(
+        f"wrote {out}: a {object_}, {simulated.diameter_mm:g} mm in diameter; its truth is in {out / TRUTH_FILE}"
+    )
 
 
 @cli.command("import")
@@ -178,7 +185,7 @@ def bench(
         Path | None, typer.Option(metavar="OUT.md", help="Write how good the paper's method is; takes minutes.")
     ] = None,
 ) -> None:
-    """Measure the program itself: its speed and size beside their targets, or the paper's method beside the truth."""
+    """Measure the program itself: speed and size beside their targets, in a minute; or the paper's method."""
     if paper_method is None:
         from app.bench.console_speed import console_report  # no other command needs the benchmarks
         from app.bench.speed import speed_report

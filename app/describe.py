@@ -23,11 +23,11 @@ def describe(answer: dict[str, Any]) -> str:
         return "\n".join(["No result:", *(f"  {reason}" for reason in answer["reasons"])])
     lines = [
         f"{'inside of a ' if answer['concave'] else ''}{answer['kind']}, {answer['diameter_mm']:.1f} mm in diameter",
-        "  no interval: the paper's method has none",
+        "  not certain, and without an interval: the paper's method has no measure of either",
         *_geometry(answer),
         f"  {answer['arc_deg']:.0f} degrees of it are visible; its pixels lie {answer['rms_mm']:.2f} mm off it (RMS)",
         f"  {_sections(answer['sections'])}",
-        f"  could be: {_candidates(answer['candidates'])}",
+        f"  candidates: {_candidates(answer['candidates'])}",
         f"  tool: {answer['tool'] or 'none'}",
         *(f"    {reason}" for reason in answer["reasons"]),
     ]
@@ -51,7 +51,7 @@ def _sections(sections: dict[str, Any]) -> str:
 
 
 def _candidates(candidates: list[dict[str, Any]]) -> str:
-    return ", ".join(f"{c['kind']} {c['diameter_mm']:.1f} mm ({100 * c['score']:.0f} %)" for c in candidates)
+    return ", ".join(f"{c['kind']} {c['diameter_mm']:.1f} mm (score {c['score']:.2f})" for c in candidates)
 
 
 def _vector(numbers: list[float]) -> str:

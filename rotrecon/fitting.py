@@ -47,6 +47,8 @@ class Fit:
     """Median visible arc of the used sections."""
     concave: bool
     """The surface is seen from inside."""
+    doubts: tuple[str, ...] = ()
+    """Why no tool should rely on this size, and what to draw instead."""
     axis_length_radius_m: float | None = None
     """Of a sphere: the radius by equation (16), the paper's second variant."""
 
@@ -71,15 +73,33 @@ def fit_solid(
     along = axis.along(circles.center_m)
     used = state == SectionState.USED
     solid = _solid(radii, kind, axis, along[used], sections.pitch_m, settings)
+    rms_m = _rms(solid, sections.points_of(used))
     return Fit(
         solid=solid,
         section_state=state,
         along_m=along - float(axis.along(solid.center_m)),
-        rms_m=_rms(solid, sections.points_of(used)),
+        rms_m=rms_m,
         arc_rad=float(np.median(circles.arc_rad[used])),
         concave=bool(np.median(circles.concave[used]) > 0.5),
+        doubts=_doubts(solid, rms_m, int(circles.used.sum()), len(state), settings),
         axis_length_radius_m=axis_length_radius(circles.center_m[axis.on_axis]) if radii.shape == "sphere" else None,
     )
+
+
+def _doubts(solid: Primitive, rms_m: float, found: int, total: int, settings: Settings) -> tuple[str, ...]:
+    """Why a size is not to be relied on: pixels far off the solid, or few of the sections with a circle."""
+    doubts: list[str] = []
+    radius_m = float(solid.radius_at(0.0))
+    if rms_m > settings.doubtful_rms_over_radius * radius_m:
+        doubts.append(
+            f"doubtful: the pixels lie {1000 * rms_m:.1f} mm off a radius of {1000 * radius_m:.0f} mm; "
+            "draw the area closer round the object, or bring the camera nearer"
+        )
+    if found < settings.doubtful_circles * total:
+        doubts.append(
+            f"doubtful: only {found} of {total} sections have a circle; draw the axis along the object, inside the area"
+        )
+    return tuple(doubts)
 
 
 def _solid(

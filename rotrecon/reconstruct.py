@@ -64,7 +64,7 @@ def reconstruct(frame: Frame, drawing: Drawing, settings: Settings) -> Reconstru
     result = Reconstruction(
         frame, drawing, settings, segments, segmentation, first, fit=_why_not(first.circles, segmentation, settings)
     )
-    if first.axis is None:
+    if first.axis is None or len(first.circles.state) < settings.minimum_axis_px:
         return result
     pixel = segments.pixel[segmentation.kept]
     sections, settled = cut_until_settled(frame.points_m, pixel, first.circles, first.axis, settings)
@@ -137,7 +137,7 @@ def _with_solid(
     if fit.rms_m > settings.rms_over_radius * float(fit.solid.radius_at(0.0)):
         advice = (
             f"the pixels lie {1000 * fit.rms_m:.1f} mm off the best {fit.solid.kind}; "
-            "draw the axis along the object, and the area close round it"
+            "draw the area as a polygon close round the object, and the axis along its middle"
         )
         return replace(result, candidates=candidates, fit=FitFailure(FailureReason.NOT_ROUND, advice))
     T_base_camera = result.frame.T_base_camera
@@ -148,7 +148,9 @@ def _with_solid(
         fit=fit,
         first_cut_radius_m=_radius_from(first, chosen.radii.shape, settings),
         solid=solid,
-        tool=propose_tool(solid, T_base_camera[:3, 3], fit.concave, settings.tools),
+        tool=NoTool(fit.doubts)
+        if fit.doubts
+        else propose_tool(solid, T_base_camera[:3, 3], fit.concave, settings.tools),
     )
 
 
@@ -162,25 +164,28 @@ def _radius_from(cut: Cut, shape: Shape, settings: Settings) -> float | None:
 
 def _why_not(circles: SectionCircles, segmentation: Segmentation, settings: Settings) -> FitFailure:
     """Why circles hold no axis, in words the operator can act on."""
-    found = int(circles.used.sum())
+    count = np.bincount(circles.state, minlength=len(SectionState))
+    found, total = int(count[SectionState.USED]), len(circles.state)
+    excluded, flat = int(count[SectionState.EXCLUDED]), int(count[SectionState.COLLINEAR])
+    close = "draw the area as a polygon close round the object, and the axis along its middle"
     if not segmentation.history.any():
         return FitFailure(
             FailureReason.OUT_OF_REACH,
             "everything in the area is outside the arm's limits; move the arm or the limits",
         )
+    if total < settings.minimum_axis_px:
+        return FitFailure(
+            FailureReason.TOO_FEW_SECTIONS, f"the axis is only {total} px long; draw it along the whole object"
+        )
+    if excluded and found < settings.minimum_sections:
+        return FitFailure(
+            FailureReason.TOO_FEW_SECTIONS,
+            f"{excluded} of {total} sections are excluded by hand; put some of them back",
+        )
     if found >= settings.minimum_sections:
+        return FitFailure(FailureReason.NO_AXIS, f"the centres of the sections do not line up; {close}")
+    if found + flat >= settings.minimum_sections:
         return FitFailure(
-            FailureReason.NO_AXIS,
-            "the section centres do not line up; draw the axis along the object, and longer",
+            FailureReason.FLAT, f"the sections are flat, nothing round stands out from its background; {close}"
         )
-    with_points = np.isin(circles.state, [SectionState.USED, SectionState.COLLINEAR])
-    if with_points.sum() >= settings.minimum_sections:
-        return FitFailure(
-            FailureReason.FLAT,
-            "the sections are flat; nothing round stands out from its background in this area",
-        )
-    return FitFailure(
-        FailureReason.TOO_FEW_SECTIONS,
-        f"only {found} sections have a circle, {settings.minimum_sections} are needed; draw the axis longer, "
-        "or the area wider, over the object",
-    )
+    return FitFailure(FailureReason.TOO_FEW_SECTIONS, f"{found} of {total} sections have a circle, too few; {close}")

@@ -33,6 +33,12 @@ class Settings:
     """At most so many cuts across the axis in space; all but axes that run into the picture settle in one or two."""
     axis_settled_rad: float = 0.02
     """A turn of the axis below this changes the radius by less than 0.02 %."""
+    minimum_axis_px: int = 10
+    """A shorter stroke is a slip of the hand, or too short to hold a direction."""
+    doubtful_rms_over_radius: float = 0.12
+    """Above this the size was seen to be off by a third and more on simulated stereo: no tool is named."""
+    doubtful_circles: float = 0.5
+    """Below this share of sections with a circle, most of what was drawn is not the object: no tool is named."""
     rms_over_radius: float = 0.3
     """Pixels that lie farther off a solid than this share of its radius do not lie on it."""
     rod_length_over_diameter: float = 8.0

@@ -6,7 +6,7 @@ from functools import cache
 from itertools import combinations
 from math import isfinite
 from pathlib import Path
-from typing import Annotated
+from typing import Annotated, get_args
 
 import msgspec
 import numpy as np
@@ -15,6 +15,11 @@ from rotrecon.arrays import Floats, freeze
 from rotrecon.primitives import Kind, Primitive
 
 Positive = Annotated[float, msgspec.Meta(gt=0)]
+
+REMEDY = (
+    f"a tool has name, takes (of {', '.join(get_args(Kind))}), diameter_mm = [lowest, highest], and may have "
+    "min_length_over_diameter, opening_mm, depth_mm, reach_m and dangerous_ok"
+)
 
 
 class ToolTableError(Exception):
@@ -129,7 +134,7 @@ def _tool(path: Path, key: str, entry: object) -> Tool:
     try:
         tool = msgspec.convert(entry, Tool)
     except msgspec.ValidationError as error:
-        raise ToolTableError(f"{path}: [{key}]: {error}; see the table that ships with the program") from error
+        raise ToolTableError(f"{path}: [{key}]: {error}; {REMEDY}") from error
     low, high = tool.diameter_mm
     if not tool.name.strip():
         raise ToolTableError(f"{path}: [{key}] has no name; give the tool the name an operator knows it by")

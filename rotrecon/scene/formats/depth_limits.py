@@ -18,7 +18,7 @@ def check_depth(source: SourceFile, depth_m: Cloud) -> None:
     if valid.size == 0:
         raise source.error(
             "has no valid depth: all of it is zero, negative, NaN or infinite",
-            "record it again, in metres with z pointing away from the camera",
+            "record it again, or turn its axes, in metres with z pointing away from the camera",
         )
     median = float(np.median(valid))
     if median > FARTHEST_MEDIAN_M:
