@@ -116,7 +116,7 @@ def test_a_scene_that_is_not_toml_is_refused(tmp_path, content):
 
 def test_a_folder_without_a_scene_is_refused(tmp_path):
     assert_refused(tmp_path, "make one with rotrecon import")
-    assert_refused(tmp_path / "none", "scene.toml is missing")
+    assert_refused(tmp_path / "none", "the scene does not exist")
 
 
 @pytest.mark.parametrize("image", ["image.png", None])

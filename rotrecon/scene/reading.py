@@ -39,6 +39,9 @@ def read_scene(folder: Path) -> Capture:
     """
     file = folder / SCENE_FILE
     source = SourceFile(file, SCENE_FILE)
+    if not folder.is_dir():
+        problem = "is a file" if folder.is_file() else "does not exist"
+        raise SceneError(folder, "the scene", problem, "name a scene folder, one that holds a scene.toml")
     if not source.exists:
         raise SceneError(folder, SCENE_FILE, "is missing", "name a scene folder, or make one with rotrecon import")
     scene = parse_scene(file, source.read_bytes())
