@@ -78,6 +78,7 @@ def cut_sections(area: AreaOfInterest, axis: ObjectAxis, size_px: tuple[int, int
 
     Raises DrawingError for a drawing that cannot be cut. Sections and lines without a pixel of the area are left out.
     """
+    check_area(area, size_px)
     mask = _area_mask(area, size_px)
     start, end = np.array(axis.start_px, dtype=np.float64), np.array(axis.end_px, dtype=np.float64)
     _check_on_frame("the axis's end", np.stack([start, end]), size_px)
@@ -126,9 +127,8 @@ def _pixels_on_grid(
     return pixel
 
 
-def _area_mask(area: AreaOfInterest, size_px: tuple[int, int]) -> Bytes:
-    """Mask (height, width) of an area that was checked to be a simple polygon on the frame."""
-    width, height = size_px
+def check_area(area: AreaOfInterest, size_px: tuple[int, int]) -> None:
+    """Raise DrawingError unless an area is a simple polygon with a size, on a frame of `size_px` (width, height)."""
     vertices = np.array(area.vertices_px, dtype=np.float64).reshape(-1, 2)
     if len(vertices) < 3:
         raise DrawingError("the area has fewer than three corners; drag a rectangle or click a polygon")
@@ -137,8 +137,13 @@ def _area_mask(area: AreaOfInterest, size_px: tuple[int, int]) -> Bytes:
         raise DrawingError("the area has no size; draw it round the object")
     if _crosses_itself(vertices[(vertices != np.roll(vertices, 1, axis=0)).any(axis=1)]):
         raise DrawingError("the area's outline crosses or touches itself; draw its corners in order round the object")
+
+
+def _area_mask(area: AreaOfInterest, size_px: tuple[int, int]) -> Bytes:
+    """Mask (height, width) of an area."""
+    width, height = size_px
     mask = np.zeros((height, width), dtype=np.uint8)
-    cv2.fillPoly(mask, [np.rint(vertices).astype(np.int32)], 1)
+    cv2.fillPoly(mask, [np.rint(np.array(area.vertices_px)).astype(np.int32)], 1)
     return mask
 
 
