@@ -2,6 +2,7 @@
 
 from dataclasses import dataclass
 from enum import StrEnum
+from typing import Literal
 
 import numpy as np
 
@@ -11,6 +12,8 @@ from rotrecon.circles import SectionCircles, SectionState
 from rotrecon.primitives import Frustum, Kind, Primitive, Sphere
 from rotrecon.radii import RadiusFit, axis_length_radius
 from rotrecon.settings import Settings
+
+DRAW_CLOSE = "draw the area as a polygon close round the object, and the axis along its middle"
 
 
 class FailureReason(StrEnum):
@@ -56,6 +59,30 @@ class Fit:
         freeze(self)
 
 
+def why_no_axis(circles: SectionCircles, reachable: bool, settings: Settings) -> FitFailure:
+    """Why circles hold no axis; `reachable` says whether any pixel is within the arm's limits."""
+    count = np.bincount(circles.state, minlength=len(SectionState))
+    found, total = int(count[SectionState.USED]), len(circles.state)
+    excluded, flat = int(count[SectionState.EXCLUDED]), int(count[SectionState.COLLINEAR])
+    reason = FailureReason.TOO_FEW_SECTIONS
+    if not reachable:
+        reason = FailureReason.OUT_OF_REACH
+        advice = "everything in the area is outside the arm's limits; move the arm or the limits"
+    elif total < settings.minimum_axis_px:
+        advice = f"the axis is only {total} px long; draw it along the whole object"
+    elif excluded and found < settings.minimum_sections:
+        advice = f"{excluded} of {total} sections are excluded by hand; put some of them back"
+    elif found >= settings.minimum_sections:
+        reason = FailureReason.NO_AXIS
+        advice = f"the centres of the sections do not line up; {DRAW_CLOSE}"
+    elif found + flat >= settings.minimum_sections:
+        reason = FailureReason.FLAT
+        advice = f"the sections are flat, nothing round stands out from its background; {DRAW_CLOSE}"
+    else:
+        advice = f"{found} of {total} sections have a circle, too few; {DRAW_CLOSE}"
+    return FitFailure(reason, advice)
+
+
 def fit_solid(
     radii: RadiusFit,
     kind: Kind | None,
@@ -63,8 +90,9 @@ def fit_solid(
     circles: SectionCircles,
     sections: SpaceSections,
     settings: Settings,
-) -> Fit:
-    """The solid that a curve through the section radii describes, placed on the axis.
+) -> Fit | FitFailure:
+    """The solid that a curve through the section radii describes, placed on the axis; refused when its pixels do not
+    lie on it.
 
     `kind` None lets a thin cylinder be called a rod. The solid's length is that of the sections it rests on.
     """
@@ -74,6 +102,9 @@ def fit_solid(
     used = state == SectionState.USED
     solid = _solid(radii, kind, axis, along[used], sections.pitch_m, settings)
     rms_m = _rms(solid, sections.points_of(used))
+    if rms_m > settings.rms_over_radius * float(solid.radius_at(0.0)):
+        advice = f"the pixels lie {1000 * rms_m:.1f} mm off the best {solid.kind}; {DRAW_CLOSE}"
+        return FitFailure(FailureReason.NOT_ROUND, advice)
     return Fit(
         solid=solid,
         section_state=state,
@@ -111,21 +142,25 @@ def _solid(
     low, high = float(along.min()), float(along.max())
     middle, length = (low + high) / 2, high - low + pitch_m
     radius = radii.radius_m + radii.slope * middle
-    if radii.shape == "cone":
-        shape: Kind = "cone"
-    elif kind is None:
-        thin = 2 * radius <= settings.rod_diameter_m
-        shape = "rod" if thin and length >= settings.rod_length_over_diameter * 2 * radius else "cylinder"
-    else:
-        shape = kind
     return Frustum(
-        kind="cone" if shape == "cone" else "rod" if shape == "rod" else "cylinder",
+        kind=_frustum_kind(radii, kind, length, 2 * radius, settings),
         center_m=axis.point_m + middle * axis.direction,
         direction=axis.direction,
         length_m=length,
         radius_m=radius,
         half_angle_rad=float(np.arctan(radii.slope)),
     )
+
+
+def _frustum_kind(
+    radii: RadiusFit, kind: Kind | None, length_m: float, diameter_m: float, settings: Settings
+) -> Literal["cylinder", "rod", "cone"]:
+    """What a straight curve is called: as asked for, else a rod when it is thin and long."""
+    if radii.shape == "cone":
+        return "cone"
+    long = length_m >= settings.rod_length_over_diameter * diameter_m
+    thin = diameter_m <= settings.rod_diameter_m
+    return "rod" if kind == "rod" or (kind is None and thin and long) else "cylinder"
 
 
 def _rms(solid: Primitive, points_m: Cloud) -> float:

@@ -8,7 +8,7 @@ from rotrecon.arrays import Bools, Cloud, Floats, Indices, blocks
 from rotrecon.axis import FittedAxis, SpaceSections, cut_in_space, fit_axis, span_along
 from rotrecon.circles import SectionCircles, SectionState, base_points, circumcircles
 from rotrecon.drawing import CrossSegments, Drawing, DrawingError, cut_sections
-from rotrecon.fitting import FailureReason, Fit, FitFailure, fit_solid
+from rotrecon.fitting import FailureReason, Fit, FitFailure, fit_solid, why_no_axis
 from rotrecon.frame import Frame
 from rotrecon.primitives import Primitive
 from rotrecon.radii import SHAPES, Shape, fit_radii
@@ -61,15 +61,16 @@ def reconstruct(frame: Frame, drawing: Drawing, settings: Settings) -> Reconstru
     segments = cut_sections(drawing.area, drawing.axis, (frame.camera.width, frame.camera.height))
     segmentation = segment(*usable_depth(frame, segments), segments.inside, settings)
     first = _cut(*base_points(frame.points_m, segments.pixel, segmentation.kept), settings)
+    reachable = bool(segmentation.history.any())
     result = Reconstruction(
-        frame, drawing, settings, segments, segmentation, first, fit=_why_not(first.circles, segmentation, settings)
+        frame, drawing, settings, segments, segmentation, first, fit=why_no_axis(first.circles, reachable, settings)
     )
     if first.axis is None or len(first.circles.state) < settings.minimum_axis_px:
         return result
     pixel = segments.pixel[segmentation.kept]
     sections, settled = cut_until_settled(frame.points_m, pixel, first.circles, first.axis, settings)
     second = _without(settled, drawing.excluded_sections, settings)
-    result = replace(result, sections=sections, second_cut=second, fit=_why_not(second.circles, segmentation, settings))
+    result = replace(result, sections=sections, second_cut=second, fit=why_no_axis(second.circles, True, settings))
     return result if second.axis is None else _with_solid(result, first, second, second.axis, sections)
 
 
@@ -134,12 +135,8 @@ def _with_solid(
         advice = f"the sections speak for a {best} rather than a {kind}; choose that, or let the program decide"
         return replace(result, candidates=candidates, fit=FitFailure(FailureReason.NOT_THIS_KIND, advice))
     fit = fit_solid(chosen.radii, kind, axis, circles, sections, settings)
-    if fit.rms_m > settings.rms_over_radius * float(fit.solid.radius_at(0.0)):
-        advice = (
-            f"the pixels lie {1000 * fit.rms_m:.1f} mm off the best {fit.solid.kind}; "
-            "draw the area as a polygon close round the object, and the axis along its middle"
-        )
-        return replace(result, candidates=candidates, fit=FitFailure(FailureReason.NOT_ROUND, advice))
+    if isinstance(fit, FitFailure):
+        return replace(result, candidates=candidates, fit=fit)
     T_base_camera = result.frame.T_base_camera
     solid = fit.solid.moved(T_base_camera)
     return replace(
@@ -148,10 +145,13 @@ def _with_solid(
         fit=fit,
         first_cut_radius_m=_radius_from(first, chosen.radii.shape, settings),
         solid=solid,
-        tool=NoTool(fit.doubts)
-        if fit.doubts
-        else propose_tool(solid, T_base_camera[:3, 3], fit.concave, settings.tools),
+        tool=_tool(fit, solid, T_base_camera[:3, 3], settings),
     )
+
+
+def _tool(fit: Fit, solid: Primitive, camera_center_m: Floats, settings: Settings) -> ToolProposal | NoTool:
+    """The tool for a solid in base coordinates; none for a size that is doubtful."""
+    return NoTool(fit.doubts) if fit.doubts else propose_tool(solid, camera_center_m, fit.concave, settings.tools)
 
 
 def _radius_from(cut: Cut, shape: Shape, settings: Settings) -> float | None:
@@ -160,32 +160,3 @@ def _radius_from(cut: Cut, shape: Shape, settings: Settings) -> float | None:
     along = cut.axis.along(cut.circles.center_m)
     radii = fit_radii(shape, along, cut.circles.radius_m, cut.circles.used, settings)
     return None if radii is None else radii.radius_at_middle(along)
-
-
-def _why_not(circles: SectionCircles, segmentation: Segmentation, settings: Settings) -> FitFailure:
-    """Why circles hold no axis, in words the operator can act on."""
-    count = np.bincount(circles.state, minlength=len(SectionState))
-    found, total = int(count[SectionState.USED]), len(circles.state)
-    excluded, flat = int(count[SectionState.EXCLUDED]), int(count[SectionState.COLLINEAR])
-    close = "draw the area as a polygon close round the object, and the axis along its middle"
-    if not segmentation.history.any():
-        return FitFailure(
-            FailureReason.OUT_OF_REACH,
-            "everything in the area is outside the arm's limits; move the arm or the limits",
-        )
-    if total < settings.minimum_axis_px:
-        return FitFailure(
-            FailureReason.TOO_FEW_SECTIONS, f"the axis is only {total} px long; draw it along the whole object"
-        )
-    if excluded and found < settings.minimum_sections:
-        return FitFailure(
-            FailureReason.TOO_FEW_SECTIONS,
-            f"{excluded} of {total} sections are excluded by hand; put some of them back",
-        )
-    if found >= settings.minimum_sections:
-        return FitFailure(FailureReason.NO_AXIS, f"the centres of the sections do not line up; {close}")
-    if found + flat >= settings.minimum_sections:
-        return FitFailure(
-            FailureReason.FLAT, f"the sections are flat, nothing round stands out from its background; {close}"
-        )
-    return FitFailure(FailureReason.TOO_FEW_SECTIONS, f"{found} of {total} sections have a circle, too few; {close}")
