@@ -105,3 +105,32 @@ def test_surface_seen_from_inside_is_concave_and_gets_no_tool():
     assert measured(result).concave
     assert measured(result).solid.radius_m == pytest.approx(0.25, rel=1e-3)
     assert isinstance(result.tool, NoTool)
+
+
+def test_doubtful_sizes_name_no_tool_and_say_why():
+    solid = cylinder(np.array([0, 0, 0.8]), direction_of(0, 90), 0.06)
+    frame, drawing = noisy(exact_frame(solid), 4), drawing_along(solid)
+    assert isinstance(reconstruct(frame, drawing, PAPER).tool, ToolProposal)
+    off, few = replace(PAPER, doubtful_rms_over_radius=0.001), replace(PAPER, doubtful_circles=1.1)
+    for strict, says in ((off, "mm off"), (few, "have a circle")):
+        result = reconstruct(frame, drawing, strict)
+        assert isinstance(result.tool, NoTool)
+        assert result.tool.reasons == measured(result).doubts
+        assert says in result.tool.reasons[0]
+        assert result.solid is not None
+
+
+def test_a_slip_of_the_hand_is_called_too_short():
+    solid = cylinder(np.array([0, 0, 0.8]), direction_of(0, 90), 0.06)
+    drawing = replace(drawing_along(solid), axis=ObjectAxis((159.5, 110), (159.5, 116)))
+    fit = reconstruct(exact_frame(solid), drawing, PAPER).fit
+    assert isinstance(fit, FitFailure)
+    assert "only 7 px long" in fit.advice
+
+
+def test_too_many_sections_taken_out_is_told_as_such():
+    solid = cylinder(np.array([0, 0, 0.8]), direction_of(0, 90), 0.06)
+    drawing = replace(drawing_along(solid), excluded_sections=frozenset(range(2, 400)))
+    fit = reconstruct(exact_frame(solid), drawing, PAPER).fit
+    assert isinstance(fit, FitFailure)
+    assert "excluded by hand" in fit.advice

@@ -66,6 +66,8 @@ def test_imported_can_is_a_cylinder(tmp_path):
     content = answer(reconstruct(frame, drawing, Settings()))
     assert content["kind"] == "cylinder"
     assert 45 < content["diameter_mm"] < 75
+    assert content["tool"] is None, "its pixels lie too far off for a tool to rely on it"
+    assert "doubtful" in content["reasons"][0]
 
 
 def test_views_answer_that_they_need_matching():
