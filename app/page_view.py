@@ -8,7 +8,7 @@ from viser import ClientHandle, NotificationHandle, SceneNodeDragEvent, SceneNod
 from app.camera_view import CameraView
 from app.charts import section_count
 from app.events import Event, HandleMoved, PointerDragged, VertexClicked
-from app.object_drawing import Part, Pixel
+from app.object_drawing import Part, Pixel, on_frame
 from app.page import (
     PageEvent,
     PageState,
@@ -81,6 +81,7 @@ class PageView:
         result, page = session.reconstruction, self.state
         section = section_shown(page, section_count(result))
         moving = session.preview is not None or not session.up_to_date
+        self._show_notice(session)
         self._show_view()
         if page.view == "camera":
             self._camera_view.look(page)
@@ -91,7 +92,6 @@ class PageView:
             self._lit = (result, section)
             self._scene.light_section(self.client, result, section)
         self._panels.show(result, page, section, session.shown.excluded_sections, moving)
-        self._show_notice(session)
 
     def _show_view(self) -> None:
         """Change the standpoint, and what is seen from it, when the other view was chosen."""
@@ -137,7 +137,7 @@ class PageView:
 
     async def _clicked(self, event: SceneNodePointerEvent) -> None:
         point = self._pixels.clicked(event)
-        self._post(PointTouched(point))
+        self._touched(point)
         self._post(VertexClicked(point, self._camera_view.closing_reach_px(self.state)))
 
     async def _pointed(self, event: SceneNodePointerEvent) -> None:
@@ -146,15 +146,19 @@ class PageView:
     async def _dragged(self, event: SceneNodeDragEvent) -> None:
         start, end = self._pixels.dragged(event)
         if event.phase != "start":
-            self._touched(event, end)
+            if event.phase == "end":
+                self._touched(end)
             self._post(PointerDragged(start, end, event.modifier == "shift", event.phase == "end"))
 
     def _handle_dragged(self, part: Part, index: int, event: SceneNodeDragEvent) -> None:
         _, end = self._pixels.dragged(event)
         if event.phase != "start":
-            self._touched(event, end)
+            if event.phase == "end":
+                self._touched(end)
             self._post(HandleMoved(part, index, end, event.phase == "end"))
 
-    def _touched(self, event: SceneNodeDragEvent, point: Pixel) -> None:
-        if event.phase == "end":
-            self._post(PointTouched(point))
+    def _touched(self, point: Pixel) -> None:
+        camera = self._pictures.frame.camera
+        on_picture = on_frame(point, (camera.width, camera.height))
+        if on_picture is not None:
+            self._post(PointTouched(on_picture))

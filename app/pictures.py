@@ -67,9 +67,10 @@ class Pictures:
         return np.asarray(cv2.resize(image, None, fx=scale, fy=scale, interpolation=cv2.INTER_AREA), dtype=np.uint8)
 
     def crop(self, point_px: Pixel) -> Bytes:
-        """The frame round a point, magnified, with a cross on it; black beyond the border."""
+        """The frame round the nearest point on it, magnified, with a cross there; black beyond the border."""
         magnified = PANEL_WIDTH_PX // CROP_PX
-        u, v = (round(value) for value in point_px)
+        height, width = self.frame.image.shape[:2]
+        u, v = (round(min(max(value, 0), size - 1)) for value, size in zip(point_px, (width, height), strict=True))
         half = CROP_PX // 2
         padded = cv2.copyMakeBorder(self.frame.image, half, half, half, half, cv2.BORDER_CONSTANT)
         crop = padded[v : v + CROP_PX : 1, u : u + CROP_PX]

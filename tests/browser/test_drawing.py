@@ -6,6 +6,8 @@ import numpy as np
 import pytest
 from playwright.sync_api import expect
 
+from app.object_drawing import Pixel
+from app.pictures import Pictures
 from app.session import Session
 from rotrecon.answer import answer
 from rotrecon.drawing import AreaOfInterest
@@ -87,6 +89,26 @@ def test_the_rubber_band_follows_an_unfinished_drag_and_escape_drops_it(operator
     assert session_of(operator).objects[0].area is None
     operator.page.mouse.up()
     operator.until(lambda: session_of(operator).objects[0].area is not None, "the area is drawn")
+
+
+def test_a_drag_may_end_outside_the_picture(operator: Operator, caplog: pytest.LogCaptureFixture) -> None:
+    operator.drag((150, 60), (260, 120), release=False)
+    operator.page.mouse.move(1000, 590, steps=4)
+    operator.page.mouse.up()
+    operator.until(lambda: session_of(operator).objects[0].area is not None, "the area is drawn")
+    operator.settle()
+    area = session_of(operator).shown.area
+    assert area is not None
+    assert max(u for u, _ in area.vertices_px) == 319
+    assert operator.view.state.last_point_px is not None
+    assert operator.view.state.last_point_px[0] == 319
+    assert not caplog.records
+
+
+@pytest.mark.parametrize("point", [(-500.0, 50.0), (5000.0, 4000.0), (0.0, 239.0)])
+def test_the_crop_keeps_to_the_frame(point: Pixel, scene: Simulated) -> None:
+    pictures = Pictures(scene.frame)
+    assert pictures.crop(point).shape == pictures.crop((100.0, 100.0)).shape
 
 
 def test_a_polygon_is_clicked_and_closed_on_its_first_corner(operator: Operator) -> None:
