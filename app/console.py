@@ -9,7 +9,7 @@ from dataclasses import dataclass
 
 from viser import CameraHandle, ClientHandle, ViserServer
 
-from app.events import Event, Reconstructed
+from app.events import Event, PageLeft, Reconstructed
 from app.measuring import measure
 from app.page import PageEvent
 from app.page_view import BRAND_COLOR, PageView
@@ -164,6 +164,7 @@ class Console:
             case PageClosed(client_id):
                 self._opened.pop(client_id, None)
                 self.pages.pop(client_id, None)
+                self.session = step(self.session, PageLeft())
             case CameraMoved() | Stopped():
                 pass
 

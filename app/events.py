@@ -58,6 +58,11 @@ class Cancelled:
 
 
 @dataclass(frozen=True)
+class PageLeft:
+    """A page was closed: a drag that it began will have no end."""
+
+
+@dataclass(frozen=True)
 class Cleared:
     """Area and axis of the selected object are taken away."""
 
@@ -108,6 +113,7 @@ Event = (
     | PolygonClosed
     | VertexTakenBack
     | Cancelled
+    | PageLeft
     | Cleared
     | Undone
     | Redone

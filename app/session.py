@@ -1,6 +1,7 @@
 """What has been drawn and what came of it: a frozen Session, events, and the pure step(session, event) -> session."""
 
 from dataclasses import dataclass, replace
+from typing import Literal
 
 from app.events import (
     Cancelled,
@@ -8,6 +9,7 @@ from app.events import (
     Event,
     HandleMoved,
     KindChosen,
+    PageLeft,
     PointerDragged,
     PolygonClosed,
     Reconstructed,
@@ -30,6 +32,8 @@ HISTORY_LENGTH = 200
 
 
 Objects = tuple[ObjectDrawing, ...]
+Drag = Literal["none", "running", "cancelled"]
+"""Whether a button is held; what a cancelled drag still sends counts for nothing, up to its end."""
 
 
 @dataclass(frozen=True)
@@ -58,6 +62,7 @@ class Session:
     selected: int = 0
     preview: ObjectDrawing | None = None
     """The selected object as a drag that has not ended would leave it."""
+    drag: Drag = "none"
     vertices_px: tuple[Pixel, ...] = ()
     """The corners of a polygon that has not been closed."""
     tool: Part = "area"
@@ -101,18 +106,23 @@ def step(session: Session, event: Event) -> Session:
 
 def _applied(session: Session, event: Event) -> Session:
     match event:
+        case PointerDragged() | HandleMoved() if session.drag == "cancelled":
+            return replace(session, drag="none" if event.finished else "cancelled")
         case PointerDragged():
-            return _dragged(session, event)
+            return _dragged(_dragging(session, event.finished), event)
         case VertexClicked():
             return _clicked(session, event)
         case HandleMoved():
-            return _handle_moved(session, event)
+            return _handle_moved(_dragging(session, event.finished), event)
         case PolygonClosed():
             return _closed(session)
         case VertexTakenBack():
             return replace(session, vertices_px=session.vertices_px[:-1])
         case Cancelled():
-            return replace(session, preview=None, vertices_px=())
+            drag: Drag = "none" if session.drag == "none" else "cancelled"
+            return replace(session, drag=drag, preview=None, vertices_px=())
+        case PageLeft():
+            return replace(session, drag="none", preview=None)
         case Cleared():
             kept = ObjectDrawing(kind=session.objects[session.selected].kind)
             return _changed(replace(session, vertices_px=()), kept)
@@ -130,6 +140,10 @@ def _applied(session: Session, event: Event) -> Session:
             return _reconstructed(session, event)
         case KindChosen():
             return session
+
+
+def _dragging(session: Session, finished: bool) -> Session:
+    return replace(session, drag="none" if finished else "running")
 
 
 def _dragged(session: Session, event: PointerDragged) -> Session:

@@ -12,6 +12,7 @@ from app.events import (
     Event,
     HandleMoved,
     KindChosen,
+    PageLeft,
     PointerDragged,
     PolygonClosed,
     Reconstructed,
@@ -45,7 +46,7 @@ events: st.SearchStrategy[Event] = st.one_of(
     st.builds(KindChosen, st.sampled_from([None, "cylinder", "sphere", "nonsense"])),
     st.builds(SectionToggled, indices),
     st.builds(Reconstructed, st.integers(0, 30), st.just(Refused("the axis has no length"))),
-    st.sampled_from([PolygonClosed(), VertexTakenBack(), Cancelled(), Cleared(), Undone(), Redone()]),
+    st.sampled_from([PolygonClosed(), VertexTakenBack(), Cancelled(), PageLeft(), Cleared(), Undone(), Redone()]),
 )
 sequences = st.lists(events, max_size=30)
 
@@ -118,6 +119,29 @@ def test_an_open_drag_changes_nothing_that_escape_does_not_restore(happened: lis
     dragging = after(PointerDragged((10.0, 10.0), (90.0, 80.0), finished=False), session=session)
     assert dragging.objects == session.objects
     assert step(dragging, Cancelled()).shown == session.shown
+
+
+drags = st.one_of(
+    st.builds(PointerDragged, pixels, pixels, st.booleans(), st.just(False)),
+    st.builds(HandleMoved, st.sampled_from(["area", "axis"]), indices, pixels, st.just(False)),
+)
+
+
+@given(sequences, drags, st.lists(drags, max_size=5), drags)
+def test_a_cancelled_drag_draws_nothing_up_to_its_end(
+    happened: list[Event], begun: PointerDragged | HandleMoved, moves: list[Event], last: PointerDragged | HandleMoved
+) -> None:
+    cancelled = after(*happened, PageLeft(), begun, Cancelled())
+    ended = after(*moves, replace(last, finished=True), session=cancelled)
+    assert ended == replace(cancelled, drag="none")
+    assert step(ended, AXIS).shown.axis == step(EMPTY, AXIS).shown.axis, "the next one counts"
+
+
+def test_escape_without_a_drag_leaves_the_next_one_alone() -> None:
+    assert after(Cancelled(), AREA).shown.area is not None
+    dragging = after(replace(AREA, finished=False), PageLeft())
+    assert dragging.preview is None
+    assert step(dragging, AREA).shown.area is not None, "the page that began another drag is still there"
 
 
 @settings(max_examples=30)

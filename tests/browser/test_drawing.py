@@ -87,7 +87,13 @@ def test_the_rubber_band_follows_an_unfinished_drag_and_escape_drops_it(operator
     operator.drag((50, 50), (150, 120), release=False)
     operator.until(lambda: session_of(operator).preview is not None, "the drag is shown")
     assert session_of(operator).objects[0].area is None
+    operator.page.keyboard.press("Escape")
+    operator.until(lambda: session_of(operator).drag == "cancelled", "the drag is dropped")
+    operator.page.mouse.move(*operator.frame_to_screen(170, 140), steps=4)
     operator.page.mouse.up()
+    operator.until(lambda: session_of(operator).drag == "none", "the dropped drag has ended")
+    assert session_of(operator).shown.area is None
+    operator.drag((50, 50), (150, 120))
     operator.until(lambda: session_of(operator).objects[0].area is not None, "the area is drawn")
 
 
