@@ -1,7 +1,7 @@
 """What has been drawn of one object, and how its parts change when one of them is moved."""
 
 from dataclasses import dataclass, replace
-from math import isfinite
+from math import copysign, isfinite
 from typing import Literal
 
 from rotrecon.drawing import AreaOfInterest, Drawing, ObjectAxis
@@ -10,6 +10,8 @@ from rotrecon.primitives import Kind
 Pixel = tuple[float, float]
 Part = Literal["area", "axis"]
 PARTS: tuple[Part, ...] = ("area", "axis")
+SMALLEST_PX = 4.0
+"""Side of a rectangle that is still meant as one: enough to be seen and grabbed again."""
 
 
 @dataclass(frozen=True)
@@ -41,12 +43,20 @@ def with_area(drawn: ObjectDrawing, area: AreaOfInterest) -> ObjectDrawing:
 
 
 def with_corner(area: AreaOfInterest, index: int, point: Pixel) -> AreaOfInterest:
-    """The area with one corner elsewhere; a rectangle stays one."""
+    """The area with one corner elsewhere; a rectangle stays one, and does not collapse."""
     corners = area.vertices_px
-    (old_u, old_v), (u, v) = corners[index], point
     if not _is_rectangle(corners):
         return AreaOfInterest((*corners[:index], point, *corners[index + 1 :]))
+    (old_u, old_v), opposite = corners[index], corners[index - 2]
+    u, v = (_apart(*values) for values in zip(point, corners[index], opposite, strict=True))
     return AreaOfInterest(tuple((u if cu == old_u else cu, v if cv == old_v else cv) for cu, cv in corners))
+
+
+def _apart(value: float, before: float, opposite: float) -> float:
+    """A side's new place, kept the smallest size off the opposite one, on the side where it was `before`."""
+    if abs(value - opposite) >= SMALLEST_PX:
+        return value
+    return opposite + copysign(min(SMALLEST_PX, abs(before - opposite)), before - opposite)
 
 
 def _is_rectangle(corners: tuple[Pixel, ...]) -> bool:

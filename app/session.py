@@ -21,7 +21,17 @@ from app.events import (
     VertexClicked,
     VertexTakenBack,
 )
-from app.object_drawing import PARTS, ObjectDrawing, Part, Pixel, distance_px, on_frame, with_area, with_corner
+from app.object_drawing import (
+    PARTS,
+    SMALLEST_PX,
+    ObjectDrawing,
+    Part,
+    Pixel,
+    distance_px,
+    on_frame,
+    with_area,
+    with_corner,
+)
 from rotrecon.drawing import AreaOfInterest, ObjectAxis
 from rotrecon.fitting import FitFailure
 from rotrecon.primitives import KINDS
@@ -154,6 +164,8 @@ def _dragged(session: Session, event: PointerDragged) -> Session:
     if event.shift or session.tool == "axis":
         drawn = replace(drawn, axis=ObjectAxis(start, end))
     else:
+        if min(abs(a - b) for a, b in zip(start, end, strict=True)) < SMALLEST_PX:
+            return replace(session, preview=None)
         drawn = with_area(drawn, AreaOfInterest.rectangle(start, end))
     return _drawn(replace(session, vertices_px=()), drawn, event.finished)
 

@@ -183,6 +183,31 @@ def test_a_corner_of_a_rectangle_takes_its_neighbours_along() -> None:
     assert moved == AreaOfInterest.rectangle((100.0, 100.0), (250.0, 350.0))
 
 
+@given(indices, pixels, pixels, pixels)
+def test_a_rectangle_neither_collapses_nor_becomes_another_shape(
+    index: int, start: Pixel, end: Pixel, point: Pixel
+) -> None:
+    area = after(PointerDragged(start, end), HandleMoved("area", index, point)).shown.area
+    if area is not None:
+        columns, rows = zip(*area.vertices_px, strict=True)
+        assert area == AreaOfInterest.rectangle(area.vertices_px[0], area.vertices_px[2])
+        assert min(max(columns) - min(columns), max(rows) - min(rows)) > 3.9
+
+
+def test_a_corner_that_meets_its_neighbour_or_its_opposite_keeps_its_distance() -> None:
+    onto_neighbour = after(AREA, HandleMoved("area", 2, (102.0, 300.0))).shown.area
+    assert onto_neighbour == AreaOfInterest.rectangle((100.0, 100.0), (104.0, 300.0))
+    onto_opposite = after(AREA, HandleMoved("area", 2, (99.0, 100.0))).shown.area
+    assert onto_opposite == AreaOfInterest.rectangle((100.0, 100.0), (104.0, 104.0))
+
+
+def test_a_dragged_area_too_small_to_be_meant_changes_nothing() -> None:
+    drawn = after(AREA, AXIS)
+    assert step(drawn, PointerDragged((300.0, 100.0), (302.0, 180.0))) == drawn
+    begun = after(VertexClicked((10.0, 10.0)))
+    assert step(begun, PointerDragged((300.0, 100.0), (301.0, 101.0))).vertices_px[0] == (10.0, 10.0)
+
+
 def test_an_area_drawn_elsewhere_drops_the_axis_of_the_object_before() -> None:
     assert after(AREA, AXIS, PointerDragged((400.0, 100.0), (500.0, 300.0))).shown.axis is None
     assert after(AREA, AXIS, PointerDragged((90.0, 90.0), (220.0, 310.0))).shown.axis is not None
