@@ -16,17 +16,24 @@ class Refused:
 
 @dataclass(frozen=True)
 class PointerDragged:
-    """A drag on the picture: with shift, or with the axis tool, an axis; otherwise a rectangle."""
+    """A drag on the picture: with shift, or with the axis tool, an axis; otherwise a rectangle.
+
+    While a polygon is open a plain drag is a click, unless the axis tool draws one longer than `reach_px`.
+    """
 
     start_px: Pixel
     end_px: Pixel
     shift: bool = False
     finished: bool = True
+    reach_px: float = 6.0
 
 
 @dataclass(frozen=True)
 class VertexClicked:
-    """A click on the picture: a corner of a polygon, or its end when within `reach_px` of the first corner."""
+    """A click on the picture: a corner of a polygon, or its end when within `reach_px` of the first corner.
+
+    Within reach of the corner before, or of a corner of the area just closed, it is the second of a double click.
+    """
 
     point_px: Pixel
     reach_px: float = 6.0

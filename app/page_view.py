@@ -148,7 +148,8 @@ class PageView:
         if event.phase != "start":
             if event.phase == "end":
                 self._touched(end)
-            self._post(PointerDragged(start, end, event.modifier == "shift", event.phase == "end"))
+            reach_px = self._camera_view.closing_reach_px(self.state)
+            self._post(PointerDragged(start, end, event.modifier == "shift", event.phase == "end", reach_px))
 
     def _handle_dragged(self, part: Part, index: int, event: SceneNodeDragEvent) -> None:
         _, end = self._pixels.dragged(event)

@@ -160,14 +160,18 @@ def _dragged(session: Session, event: PointerDragged) -> Session:
     start, end = on_frame(event.start_px, session.size_px), on_frame(event.end_px, session.size_px)
     if start is None or end is None:
         return session
+    is_axis = event.shift or session.tool == "axis"
+    if session.vertices_px and not event.shift and (not is_axis or distance_px(start, end) <= event.reach_px):
+        session = replace(session, preview=None)
+        return _clicked(session, VertexClicked(end, event.reach_px)) if event.finished else session
     drawn = replace(session.objects[session.selected], excluded_sections=frozenset())
-    if event.shift or session.tool == "axis":
+    if is_axis:
         drawn = replace(drawn, axis=ObjectAxis(start, end))
     else:
         if min(abs(a - b) for a, b in zip(start, end, strict=True)) < SMALLEST_PX:
             return replace(session, preview=None)
         drawn = with_area(drawn, AreaOfInterest.rectangle(start, end))
-    return _drawn(replace(session, vertices_px=()), drawn, event.finished)
+    return _drawn(session, drawn, event.finished)
 
 
 def _clicked(session: Session, event: VertexClicked) -> Session:
@@ -177,6 +181,10 @@ def _clicked(session: Session, event: VertexClicked) -> Session:
     vertices = session.vertices_px
     if len(vertices) >= 3 and distance_px(point, vertices[0]) <= event.reach_px:
         return _closed(session)
+    area = session.shown.area
+    doubled = vertices[-1:] if vertices or area is None else area.vertices_px
+    if any(distance_px(point, corner) <= event.reach_px for corner in doubled):
+        return session
     return replace(session, vertices_px=(*vertices, point))
 
 

@@ -39,7 +39,7 @@ coordinates = st.floats(-1000, 2000) | st.sampled_from([float("nan"), float("inf
 pixels = st.tuples(coordinates, coordinates)
 indices = st.integers(-2, 8)
 events: st.SearchStrategy[Event] = st.one_of(
-    st.builds(PointerDragged, pixels, pixels, st.booleans(), st.booleans()),
+    st.builds(PointerDragged, pixels, pixels, st.booleans(), st.booleans(), st.floats(0, 50)),
     st.builds(VertexClicked, pixels, st.floats(0, 50)),
     st.builds(HandleMoved, st.sampled_from(["area", "axis"]), indices, pixels, st.booleans()),
     st.builds(ToolChosen, st.sampled_from(["area", "axis", "nonsense"])),
@@ -162,6 +162,32 @@ def test_two_corners_do_not_close_and_backspace_takes_the_last_one_back() -> Non
     assert step(session, VertexTakenBack()).vertices_px == ((10, 10),)
     assert step(session, Undone()).vertices_px == ((10, 10),)
     assert step(session, Cancelled()).vertices_px == ()
+
+
+def test_while_a_polygon_is_open_a_plain_drag_is_a_corner_and_shift_draws_the_axis() -> None:
+    begun = after(VertexClicked((10.0, 10.0)), VertexClicked((50.0, 10.0)))
+    shaky = PointerDragged((49.0, 60.0), (50.0, 62.0))
+    assert step(begun, shaky).vertices_px == ((10.0, 10.0), (50.0, 10.0), (50.0, 62.0))
+    assert step(begun, AREA).vertices_px == ((10.0, 10.0), (50.0, 10.0), (200.0, 300.0))
+    moving = step(begun, replace(AREA, finished=False))
+    assert moving.shown == begun.shown
+    assert moving.vertices_px == begun.vertices_px
+    for session, axis in ((begun, AXIS), (step(begun, ToolChosen("axis")), replace(AXIS, shift=False))):
+        drawn = step(session, axis)
+        assert drawn.vertices_px == begun.vertices_px
+        assert drawn.shown.axis == ObjectAxis(AXIS.start_px, AXIS.end_px)
+        assert drawn.shown.area is None
+        assert step(session, replace(shaky, shift=False)).vertices_px[2:] == ((50.0, 62.0),)
+    closed = after(shaky, PointerDragged((12.0, 11.0), (13.0, 13.0)), session=begun)
+    assert closed.shown.area == AreaOfInterest(((10.0, 10.0), (50.0, 10.0), (50.0, 62.0)))
+
+
+def test_a_double_click_is_one_corner() -> None:
+    session = after(*[VertexClicked((10.0, 10.0))] * 2, VertexClicked((50.0, 10.0)), VertexClicked((51.0, 12.0)))
+    assert session.vertices_px == ((10.0, 10.0), (50.0, 10.0))
+    closed = after(VertexClicked((50.0, 60.0)), *[VertexClicked((10.0, 10.0))] * 2, session=session)
+    assert closed.shown.area is not None
+    assert closed.vertices_px == (), "closed by a double click, no other polygon is begun"
 
 
 def test_a_rectangle_and_a_stroke_make_a_drawing_that_can_be_measured() -> None:
