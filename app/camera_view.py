@@ -25,6 +25,8 @@ USUAL_HANDLES = 6
 CLOSING_REACH_PX = 12.0
 """On the screen; of a click that closes a polygon on its first corner."""
 AREA_COLOR, AXIS_COLOR, CORNER_COLOR = (255, 176, 0), (0, 200, 255), (255, 255, 255)
+CLOSING_COLOR = (128, 88, 0)
+"""Of the line that would close a polygon that is still open."""
 MARGIN = 1.04
 """Room round the picture, so that a corner on its border can be seen and grabbed."""
 JPEG_QUALITY = 85
@@ -61,6 +63,7 @@ class CameraView:
         for node in (backdrop, self.picture):
             _block(node)
         self._area = self._add_lines("area", AREA_COLOR)
+        self._closing = self._add_lines("closing", CLOSING_COLOR)
         self._axis = self._add_lines("axis", AXIS_COLOR)
         self._parts: list[Part] = []
         self._handles = [self._add_handle(number) for number in range(USUAL_HANDLES)]
@@ -73,6 +76,7 @@ class CameraView:
             pieces = [*pairwise(vertices_px)]
             pieces += [piece for vertex in vertices_px for piece in _cross(vertex, self._screen_px(6, page))]
         self._set_lines(self._area, pieces)
+        self._set_lines(self._closing, [(vertices_px[-1], vertices_px[0])] if len(vertices_px) >= 3 else [])
         ends = () if drawn.axis is None else (drawn.axis.start_px, drawn.axis.end_px)
         self._set_lines(self._axis, [] if not ends else _arrow(ends[0], ends[1], self._screen_px(16, page)))
         places: list[tuple[Part, Pixel]] = []

@@ -8,11 +8,13 @@ from rotrecon.fitting import FitFailure
 def hint(session: Session) -> str:
     """What the operator can do next, in one line."""
     if session.vertices_px:
+        if session.notice is not None:
+            return session.notice.text + " Backspace takes a corner back."
         missing = 3 - len(session.vertices_px)
         if missing > 0:
             corners = "one more corner" if missing == 1 else f"{missing} more corners"
             return f"Click {corners} round the object. Escape drops the polygon."
-        return "Click the next corner, or the first one (or Enter) to close the polygon."
+        return "Click the next corner, or the first one (or Enter) to close the polygon. Escape drops it."
     shown = session.shown
     if shown.area is None and shown.axis is None:
         return "Drag a rectangle round the object, or click the corners of a polygon."

@@ -32,7 +32,7 @@ from app.object_drawing import (
     with_area,
     with_corner,
 )
-from rotrecon.drawing import AreaOfInterest, ObjectAxis
+from rotrecon.drawing import AreaOfInterest, DrawingError, ObjectAxis, check_area
 from rotrecon.fitting import FitFailure
 from rotrecon.primitives import KINDS
 from rotrecon.reconstruct import Reconstruction
@@ -84,7 +84,7 @@ class Session:
     measured: Measured | None = None
     """The latest measurement; until a new one is there, that of an earlier revision."""
     notice: Notice | None = None
-    """The failure to measure what is shown; gone as soon as that changes."""
+    """The failure to measure what is shown, or to close the polygon; gone as soon as that changes."""
 
     @property
     def shown(self) -> ObjectDrawing:
@@ -111,6 +111,8 @@ def step(session: Session, event: Event) -> Session:
         after = replace(after, revision=session.revision + 1, notice=None)
         if after.shown.complete is None:
             after = replace(after, measured=None)
+    elif after.vertices_px != session.vertices_px:
+        after = replace(after, notice=None)
     return _told(after)
 
 
@@ -191,8 +193,13 @@ def _clicked(session: Session, event: VertexClicked) -> Session:
 def _closed(session: Session) -> Session:
     if len(session.vertices_px) < 3:
         return session
+    area = AreaOfInterest(session.vertices_px)
+    try:
+        check_area(area, session.size_px)
+    except DrawingError as error:
+        return replace(session, notice=Notice(session.revision, "This polygon cannot be closed", sentence(str(error))))
     drawn = replace(session.objects[session.selected], excluded_sections=frozenset())
-    return _changed(replace(session, vertices_px=()), with_area(drawn, AreaOfInterest(session.vertices_px)))
+    return _changed(replace(session, vertices_px=()), with_area(drawn, area))
 
 
 def _handle_moved(session: Session, event: HandleMoved) -> Session:
@@ -241,11 +248,11 @@ def _reconstructed(session: Session, event: Reconstructed) -> Session:
 
 
 def _told(session: Session) -> Session:
-    """The session with a notice of a failure, once a revision and not in the middle of a drag."""
+    """The session with a notice of a failure, once a revision and not in the middle of a drag or a polygon."""
     measured = session.measured
     if measured is None or measured.revision != session.revision:
         return session
-    if session.preview is not None or session.notice is not None:
+    if session.preview is not None or session.vertices_px or session.notice is not None:
         return session
     match measured.outcome:
         case Refused(reason):

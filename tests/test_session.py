@@ -26,8 +26,8 @@ from app.events import (
 )
 from app.hints import hint
 from app.object_drawing import ObjectDrawing, Pixel
-from app.session import HISTORY_LENGTH, Session, step
-from rotrecon.drawing import AreaOfInterest, ObjectAxis
+from app.session import HISTORY_LENGTH, Session, sentence, step
+from rotrecon.drawing import AreaOfInterest, DrawingError, ObjectAxis, check_area
 from rotrecon.reconstruct import Reconstruction, reconstruct
 from rotrecon.settings import Settings
 from rotrecon.simulation.simulate import simulate
@@ -152,8 +152,27 @@ def test_clicked_corners_become_the_area_when_the_polygon_is_closed(corners: lis
     assert session.vertices_px == tuple(corners)
     by_click = step(session, VertexClicked(corners[0], reach_px=0.5))
     by_key = step(session, PolygonClosed())
-    assert by_click.shown.area == by_key.shown.area == AreaOfInterest(tuple(corners))
-    assert by_click.vertices_px == ()
+    assert by_click == by_key
+    area = AreaOfInterest(tuple(corners))
+    if by_click.notice is None:
+        assert by_click.shown.area == area
+        assert by_click.vertices_px == ()
+    else:
+        assert by_click.vertices_px == session.vertices_px, "it can be corrected"
+        with pytest.raises(DrawingError) as refused:
+            check_area(area, SIZE_PX)
+        assert by_click.notice.text == sentence(str(refused.value))
+
+
+def test_a_polygon_that_crosses_itself_is_refused_at_once_and_can_be_corrected() -> None:
+    corners = [(10.0, 10.0), (200.0, 200.0), (200.0, 10.0), (10.0, 200.0)]
+    refused = after(*map(VertexClicked, corners), PolygonClosed())
+    assert refused.notice is not None
+    assert "crosses" in refused.notice.text
+    assert refused.notice.text in hint(refused)
+    corrected = step(refused, VertexTakenBack())
+    assert corrected.notice is None
+    assert step(corrected, PolygonClosed()).shown.area == AreaOfInterest(tuple(corners[:3]))
 
 
 def test_two_corners_do_not_close_and_backspace_takes_the_last_one_back() -> None:
