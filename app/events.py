@@ -106,6 +106,11 @@ class SectionToggled:
 
 
 @dataclass(frozen=True)
+class SectionsRestored:
+    """All sections that were taken out are put back."""
+
+
+@dataclass(frozen=True)
 class Reconstructed:
     """A measurement has come back."""
 
@@ -127,5 +132,6 @@ Event = (
     | ToolChosen
     | KindChosen
     | SectionToggled
+    | SectionsRestored
     | Reconstructed
 )

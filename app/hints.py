@@ -21,7 +21,7 @@ def hint(session: Session) -> str:
     if shown.area is None:
         return "Now draw the area: drag a rectangle round the object."
     if shown.axis is None:
-        return "Now draw the object's axis: shift + drag along its middle."
+        return "Now draw the object's axis: shift + drag along its middle, or choose Axis."
     if session.preview is not None:
         return "Let go where it is right; the result follows."
     if not session.up_to_date:

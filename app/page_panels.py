@@ -15,7 +15,7 @@ from app.charts import (
     radius_scales,
     section_count,
 )
-from app.events import Event, SectionToggled
+from app.events import Event, SectionsRestored, SectionToggled
 from app.page import LAYERS, DarkChosen, LayerChosen, OpacityChosen, PageEvent, PageState, SectionChosen
 from app.panels import Panels
 from app.pictures import Pictures
@@ -77,6 +77,7 @@ class PagePanels:
             self._slider.value = section + 1
         for part in (self._chart, self._slider, self._exclude):
             part.visible = count > 0
+        self._restore.visible = bool(excluded)
         self._exclude.label = "Put this section back" if section in excluded else "Exclude this section"
         text, line = escape(section_text(result, section)), escape(line_text(result, section))
         self._plane.content = (
@@ -97,10 +98,12 @@ class PagePanels:
             visible=False,
         )
         self._slider = self._gui.add_slider("Section", 1, 2, 1, 1, visible=False, hint="Z and X step")
-        self._plane = self._gui.add_html("")
         self._exclude = self._gui.add_button("Exclude this section", visible=False, color="gray")
+        self._restore = self._gui.add_button("Put all back", visible=False, color="gray")
+        self._plane = self._gui.add_html("")
         self._slider.on_update(self._choosing(lambda number: SectionChosen(int(number) - 1)))
         self._exclude.on_click(self._choosing(lambda _: SectionToggled(self._section)))
+        self._restore.on_click(self._choosing(lambda _: SectionsRestored()))
 
     def _add_picture(self) -> None:
         opacity = self._gui.add_slider("Depth, %", 0, 100, 5, 0)

@@ -17,7 +17,6 @@ from app.events import (
     Undone,
     VertexTakenBack,
 )
-from app.object_drawing import PARTS
 from app.page import PageEvent, SectionStepped, ViewChosen, Zoomed
 from app.result_text import hint_html, result_html, why_html
 from app.session import Session
@@ -27,6 +26,7 @@ from rotrecon.primitives import KINDS
 PANEL_WIDTH_PX = 390
 TABS = ("Sections", "Picture", "Why", "Buttons", "Help")
 AUTO = "auto"
+TOOLS = {"Area": ToolChosen("area"), "Axis": ToolChosen("axis")}
 POLYGON = {"Close": PolygonClosed(), "Corner back": VertexTakenBack(), "Cancel": Cancelled()}
 HISTORY = {"Undo": Undone(), "Redo": Redone(), "Clear": Cleared()}
 VIEW = {"Camera": ViewChosen("camera"), "3D": ViewChosen("3D")}
@@ -63,6 +63,8 @@ class Panels:
         self._result = self._gui.add_html("")
         self._kind = self._gui.add_dropdown("Object is a", (AUTO, *KINDS), initial_value=AUTO)
         self._kind.on_update(self._choosing(lambda value: KindChosen(None if value == AUTO else value)))
+        self._tool = self._gui.add_dropdown("A drag draws", tuple(TOOLS), hint="Shift + drag: the axis")
+        self._tool.on_update(self._choosing(TOOLS.get))
         self._add_buttons("Drawing", HISTORY)
         self._add_buttons("View", VIEW)
         self._add_keys()
@@ -82,13 +84,11 @@ class Panels:
         _set(self._hint, "content", hint_html(session))
         _set(self._result, "content", result_html(session))
         _set(self._kind, "value", session.shown.kind or AUTO)
-        _set(self._tool, "value", session.tool)
+        _set(self._tool, "value", session.tool.capitalize())
         if session.preview is None:
             _set(self._why, "content", why_html(session))
 
     def _add_controls(self) -> None:
-        self._tool = self._gui.add_dropdown("A drag draws", PARTS, initial_value="area", hint="Shift + drag: the axis")
-        self._tool.on_update(self._choosing(ToolChosen))
         for label, events in (("Polygon", POLYGON), ("Zoom", ZOOM), ("Section", SECTION)):
             self._add_buttons(label, events)
 

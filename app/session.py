@@ -15,6 +15,7 @@ from app.events import (
     Reconstructed,
     Redone,
     Refused,
+    SectionsRestored,
     SectionToggled,
     ToolChosen,
     Undone,
@@ -148,6 +149,8 @@ def _applied(session: Session, event: Event) -> Session:
             return _changed(session, replace(session.objects[session.selected], kind=event.kind))
         case SectionToggled():
             return _section_toggled(session, event.section)
+        case SectionsRestored():
+            return _changed(session, replace(session.objects[session.selected], excluded_sections=frozenset()))
         case Reconstructed():
             return _reconstructed(session, event)
         case KindChosen():

@@ -18,6 +18,7 @@ from app.events import (
     Reconstructed,
     Redone,
     Refused,
+    SectionsRestored,
     SectionToggled,
     ToolChosen,
     Undone,
@@ -46,7 +47,9 @@ events: st.SearchStrategy[Event] = st.one_of(
     st.builds(KindChosen, st.sampled_from([None, "cylinder", "sphere", "nonsense"])),
     st.builds(SectionToggled, indices),
     st.builds(Reconstructed, st.integers(0, 30), st.just(Refused("the axis has no length"))),
-    st.sampled_from([PolygonClosed(), VertexTakenBack(), Cancelled(), PageLeft(), Cleared(), Undone(), Redone()]),
+    st.sampled_from(
+        [PolygonClosed(), VertexTakenBack(), Cancelled(), PageLeft(), Cleared(), SectionsRestored(), Undone(), Redone()]
+    ),
 )
 sequences = st.lists(events, max_size=30)
 
@@ -306,6 +309,8 @@ def test_a_section_is_taken_out_and_put_back_and_forgotten_with_the_drawing(
     assert not out.up_to_date
     back = after(Reconstructed(out.revision, result), SectionToggled(5), session=out)
     assert back.shown.excluded_sections == frozenset()
+    assert step(out, SectionsRestored()).objects == session.objects
+    assert step(session, SectionsRestored()) == session
     assert step(session, SectionToggled(100_000)) == session
     assert step(out, HandleMoved("axis", 0, (300.0, 200.0))).shown.excluded_sections == frozenset()
 

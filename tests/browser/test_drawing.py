@@ -163,6 +163,17 @@ def test_the_kind_that_is_asked_for_is_fitted(drawn: Operator) -> None:
     assert drawn.value("kind") == "rod"
 
 
+def test_by_touch_a_plain_drag_draws_the_axis_when_that_is_chosen(operator: Operator) -> None:
+    operator.drag((100, 60), (200, 180))
+    expect(operator.page.get_by_test_id("hint")).to_contain_text("or choose Axis")
+    operator.page.get_by_label("A drag draws").click()
+    operator.page.get_by_role("option", name="Axis").click()
+    operator.until(lambda: session_of(operator).tool == "axis", "the axis is chosen")
+    operator.settle()
+    operator.drag((150, 80), (150, 160))
+    operator.until(lambda: session_of(operator).objects[0].axis is not None, "the axis is drawn")
+
+
 def test_buttons_do_what_keys_do(drawn: Operator) -> None:
     drawing = session_of(drawn).objects
     for button, expected in (("Clear", False), ("Undo", True), ("Redo", False)):
