@@ -2,14 +2,29 @@
 
 from app.events import Refused
 from app.session import Session, sentence
-from rotrecon.fitting import FitFailure
+from rotrecon.fitting import Fit, FitFailure
+from rotrecon.reconstruct import Reconstruction
+
+
+def warning(session: Session) -> str | None:
+    """Why there is no result for what is shown, or none to rely on, as a sentence; nothing while it is being drawn."""
+    if session.vertices_px:
+        return None if session.notice is None else session.notice.text + " Backspace takes a corner back."
+    if session.preview is not None or session.measured is None or not session.up_to_date:
+        return None
+    match session.measured.outcome:
+        case Refused(reason=why) | Reconstruction(fit=FitFailure(advice=why) | Fit(doubts=(why, *_))):
+            return sentence(why)
+        case _:
+            return None
 
 
 def hint(session: Session) -> str:
     """What the operator can do next, in one line."""
+    warned = warning(session)
+    if warned is not None:
+        return warned
     if session.vertices_px:
-        if session.notice is not None:
-            return session.notice.text + " Backspace takes a corner back."
         missing = 3 - len(session.vertices_px)
         if missing > 0:
             corners = "one more corner" if missing == 1 else f"{missing} more corners"
@@ -19,15 +34,12 @@ def hint(session: Session) -> str:
     if shown.area is None and shown.axis is None:
         return "Drag a rectangle round the object, or click the corners of a polygon."
     if shown.area is None:
-        return "Now draw the area: drag a rectangle round the object."
+        choose = "choose Area, and " if session.tool == "axis" else ""
+        return f"Now draw the area: {choose}drag a rectangle round the object."
     if shown.axis is None:
         return "Now draw the object's axis: shift + drag along its middle, or choose Axis."
     if session.preview is not None:
         return "Let go where it is right; the result follows."
     if not session.up_to_date:
         return "Measuring \N{HORIZONTAL ELLIPSIS}"
-    if session.measured is not None and isinstance(session.measured.outcome, Refused):
-        return sentence(session.measured.outcome.reason)
-    if session.reconstruction is not None and isinstance(session.reconstruction.fit, FitFailure):
-        return sentence(session.reconstruction.fit.advice)
     return "Measured. Drag the handles to correct the drawing, or draw anew for another object."

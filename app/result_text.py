@@ -5,9 +5,10 @@ from functools import lru_cache
 from html import escape
 from typing import Any
 
-from app.hints import hint
-from app.session import Session
+from app.hints import hint, warning
+from app.session import Session, sentence
 from rotrecon.answer import answer
+from rotrecon.fitting import Fit
 from rotrecon.reconstruct import Reconstruction
 from rotrecon.tools import Tool, ToolProposal
 
@@ -23,25 +24,28 @@ FIELD = '<div class="rr-field"><span>{name}</span><b data-field="{key}" data-val
 
 
 def hint_html(session: Session) -> str:
-    """What to do next."""
-    return f'<div class="rr-hint" data-testid="hint">{escape(hint(session))}</div>'
+    """What to do next; amber when something is wrong with what is shown."""
+    style = "rr-hint" if warning(session) is None else "rr-hint rr-amber"
+    return f'<div class="{style}" data-testid="hint">{escape(hint(session))}</div>'
 
 
 def result_html(session: Session) -> str:
     """The result in numbers: class, diameter, size, quality and the tool; dimmed while a new one is on its way."""
     result = session.reconstruction
-    content = None if result is None else _answer(result)
-    if content is None or content["kind"] is None:
+    if result is None or result.solid is None:
+        nothing = "Nothing measured yet." if session.measured is None else "Not measured"
         return (
             '<div class="rr-result" data-testid="result" data-revision="-1">'
             '<div class="rr-big rr-dim">&oslash; &ndash; mm</div>'
-            '<div class="rr-small">Nothing measured yet.</div></div>'
+            f'<div class="rr-small">{nothing}</div></div>'
         )
+    content = _answer(result)
     revision = session.measured.revision if session.measured is not None else -1
     dim = "" if session.up_to_date else " rr-dim"
     concave = ", seen from inside" if content["concave"] else ""
     tool = content["tool"]
-    tool_text = f"<b>{escape(tool)}</b>" if tool else "<b>No tool</b> &mdash; see &ldquo;Why&rdquo;"
+    doubtful = "doubtful, " if _doubts(result) else ""
+    tool_text = f"<b>{escape(tool)}</b>" if tool else f"<b>No tool</b> &ndash; {doubtful}see &ldquo;Why&rdquo;"
     return (
         f'<div class="rr-result{dim}" data-testid="result" data-revision="{revision}">'
         f'<div class="rr-head"><div class="rr-big" data-field="diameter_mm" data-value="{content["diameter_mm"]}">'
@@ -57,19 +61,22 @@ def why_html(session: Session) -> str:
     """What the result rests on: first cut beside second cut, candidates, dropped sections, and every tool."""
     result = session.reconstruction
     if result is None:
-        return '<div class="rr-dim">Draw an area and an axis first.</div>'
+        return f'<div class="rr-why rr-dim">{escape(warning(session) or "Draw an area and an axis first.")}</div>'
     content = _answer(result)
+    doubts = _doubts(result)
     blocks = [("Why not", _list(content["reasons"]))] if content["kind"] is None else []
+    if doubts:
+        blocks.append(("Doubts", _list([sentence(doubt) for doubt in doubts])))
     if content["kind"] is not None:
         first_mm = 0.0 if result.first_cut_radius_m is None else 2000 * result.first_cut_radius_m
         cuts = [("Across the drawn axis", first_mm), ("Across the axis in space", content["diameter_mm"])]
         blocks.append(("Diameter by the cut", _table([(name, f"{value:.1f} mm") for name, value in cuts if value])))
-        rows = [(c["kind"], f"{c['diameter_mm']:.1f} mm", f"{100 * c['score']:.0f} %") for c in content["candidates"]]
-        blocks.append(("Candidates", _table(rows)))
+        rows = [(c["kind"], f"{c['diameter_mm']:.1f} mm", f"{c['score']:.2f}") for c in content["candidates"]]
+        blocks.append(("Candidates, by score", _table(rows)))
     dropped = content["sections"]["dropped"].items()
     rows = [("used", str(content["sections"]["used"]))] + [(REASONS.get(str(k), str(k)), str(n)) for k, n in dropped]
     blocks.append(("Sections", _table(rows)))
-    if content["kind"] is not None:
+    if content["kind"] is not None and not doubts:
         blocks.append(("Tools", _tools(result, content["reasons"])))
     return '<div class="rr-why" data-testid="why">' + "".join(f"<h4>{n}</h4>{body}" for n, body in blocks) + "</div>"
 
@@ -80,9 +87,13 @@ def _answer(result: Reconstruction) -> dict[str, Any]:
     return answer(result)
 
 
+def _doubts(result: Reconstruction) -> tuple[str, ...]:
+    return result.fit.doubts if isinstance(result.fit, Fit) else ()
+
+
 def _interval(content: dict[str, Any]) -> str:
     if content["interval_mm"] is None:
-        return f"no interval: the {content['method']}&rsquo;s method has none"
+        return "not certain, no interval: the paper&rsquo;s method has no measure of either"
     low, high = content["interval_mm"]
     return f"{low:.1f} to {high:.1f} mm (95 %)"
 

@@ -1,6 +1,7 @@
 """Laws of the session: nothing raises, what is undone comes back, and nothing stale or off the frame gets in."""
 
 from dataclasses import replace
+from html import escape
 
 import pytest
 from hypothesis import given, settings
@@ -27,11 +28,14 @@ from app.events import (
 )
 from app.hints import hint
 from app.object_drawing import ObjectDrawing, Pixel
+from app.result_text import hint_html, result_html, why_html
 from app.session import HISTORY_LENGTH, Session, sentence, step
 from rotrecon.drawing import AreaOfInterest, DrawingError, ObjectAxis, check_area
+from rotrecon.fitting import Fit
 from rotrecon.reconstruct import Reconstruction, reconstruct
 from rotrecon.settings import Settings
 from rotrecon.simulation.simulate import simulate
+from rotrecon.tools import NoTool
 
 SIZE_PX = (640, 480)
 EMPTY = Session(SIZE_PX)
@@ -297,6 +301,29 @@ def test_the_hint_tells_of_a_measurement_only_when_it_is_one_of_the_drawing_show
     assert hint(step(refused, HandleMoved("axis", 1, (160.0, 250.0)))).startswith("Measuring")
     dragged = HandleMoved("axis", 1, (160.0, 250.0), finished=False)
     assert hint(step(refused, dragged)) == hint(step(measured[0], dragged)), "it does not flicker during a drag"
+
+
+def test_thin_evidence_and_refusals_are_said_in_amber(measured: tuple[Session, Reconstruction]) -> None:
+    good, result = measured
+    assert "rr-amber" not in hint_html(good)
+    assert "not certain, no interval" in result_html(good)
+    assert "doubtful" not in result_html(good)
+    assert "Candidates, by score" in why_html(good)
+    assert "%" not in why_html(good)
+    assert isinstance(result.fit, Fit)
+    doubts = ("doubtful: only 3 of 90 sections have a circle", "doubtful: <noise>")
+    thin = replace(result, fit=replace(result.fit, doubts=doubts), tool=NoTool(doubts))
+    doubtful = step(good, Reconstructed(good.revision, thin))
+    assert hint(doubtful) == "Doubtful: only 3 of 90 sections have a circle."
+    assert "rr-amber" in hint_html(doubtful)
+    assert "<b>No tool</b> &ndash; doubtful, see" in result_html(doubtful)
+    assert all(escape(sentence(doubt)) in why_html(doubtful) for doubt in doubts)
+    refused = step(good, Reconstructed(good.revision, Refused("the axis has no length")))
+    assert "rr-amber" in hint_html(refused)
+    assert "Not measured" in result_html(refused)
+    assert "The axis has no length." in why_html(refused)
+    assert "Nothing measured yet." in result_html(EMPTY)
+    assert "rr-amber" not in hint_html(step(refused, HandleMoved("axis", 1, (300.0, 250.0))))
 
 
 def test_a_section_is_taken_out_and_put_back_and_forgotten_with_the_drawing(
