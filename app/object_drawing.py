@@ -30,6 +30,14 @@ class ObjectDrawing:
             return None
         return Drawing(self.area, self.axis, self.kind, self.excluded_sections)
 
+    @property
+    def middle_px(self) -> Pixel | None:
+        """The middle of the area."""
+        if self.area is None:
+            return None
+        columns, rows = zip(*self.area.vertices_px, strict=True)
+        return ((min(columns) + max(columns)) / 2, (min(rows) + max(rows)) / 2)
+
 
 def with_area(drawn: ObjectDrawing, area: AreaOfInterest) -> ObjectDrawing:
     """The object with a new area; an axis that lies elsewhere was meant for another object."""

@@ -24,7 +24,7 @@ class PageState:
     layer: LayerName = "segmentation"
     zoom: float = 1.0
     last_point_px: Pixel | None = None
-    """Where the pointer last did something: the crop's middle, and what zooming goes for."""
+    """Where the pointer last did something: the crop's middle, and what zooming goes for without an area."""
     center_px: Pixel | None = None
     """What the zoomed view looks at; None for the middle of the picture."""
     section: int | None = None
@@ -95,8 +95,11 @@ PageEvent = (
 )
 
 
-def page_step(page: PageState, event: PageEvent, section_count: int) -> PageState:
-    """The page after an event; values a page could not have sent by its controls change nothing."""
+def page_step(page: PageState, event: PageEvent, section_count: int, middle_px: Pixel | None = None) -> PageState:
+    """The page after an event; values a page could not have sent by its controls change nothing.
+
+    `middle_px` is that of the drawn area, which zooming goes for.
+    """
     match event:
         case ViewChosen(view) if view in VIEWS:
             return replace(page, view=view)
@@ -105,7 +108,7 @@ def page_step(page: PageState, event: PageEvent, section_count: int) -> PageStat
         case LayerChosen(layer) if layer in LAYERS:
             return replace(page, layer=layer)
         case Zoomed(steps):
-            return _zoomed(page, steps)
+            return _zoomed(page, steps, middle_px or page.last_point_px)
         case PointTouched(point) if all(isfinite(value) for value in point):
             return replace(page, last_point_px=point)
         case SectionChosen(section):
@@ -123,9 +126,9 @@ def section_shown(page: PageState, section_count: int) -> int:
     return _within(section_count // 2 if page.section is None else page.section, section_count)
 
 
-def _zoomed(page: PageState, steps: int | None) -> PageState:
+def _zoomed(page: PageState, steps: int | None, target_px: Pixel | None) -> PageState:
     zoom = 1.0 if steps is None else min(max(page.zoom * ZOOM_STEP**steps, 1.0), LARGEST_ZOOM)
-    return replace(page, zoom=zoom, center_px=None if zoom == 1.0 else page.last_point_px)
+    return replace(page, zoom=zoom, center_px=None if zoom == 1.0 else target_px)
 
 
 def _within(section: int, count: int) -> int:

@@ -15,6 +15,8 @@ from app.page import (
     PointTouched,
     SectionChosen,
     SectionPointed,
+    ViewChosen,
+    Zoomed,
     page_step,
     section_shown,
 )
@@ -61,14 +63,17 @@ class PageView:
         picture.on_drag("left", modifier="shift")(self._dragged)
 
     def take(self, event: PageEvent, session: Session) -> None:
-        """Follow a choice made on this page."""
+        """Follow a choice made on this page; what would move the picture away under a drag has to wait for its end."""
+        if session.drag == "running" and isinstance(event, ViewChosen | Zoomed):
+            return
         result = session.reconstruction
         if isinstance(event, SectionPointed):
             section = self._section_under(event, result)
             if section is None:
                 return
             event = SectionChosen(section)
-        self.state = page_step(self.state, event, section_count(result))
+        middle_px = session.shown.middle_px if not session.vertices_px else None
+        self.state = page_step(self.state, event, section_count(result), middle_px)
 
     def _section_under(self, pointed: SectionPointed, result: Reconstruction | None) -> int | None:
         if result is None or result.sections is None:

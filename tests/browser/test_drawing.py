@@ -117,6 +117,20 @@ def test_the_crop_keeps_to_the_frame(point: Pixel, scene: Simulated) -> None:
     assert pictures.crop(point).shape == pictures.crop((100.0, 100.0)).shape
 
 
+def test_the_picture_stays_under_a_drag_and_is_zoomed_about_the_area(operator: Operator) -> None:
+    operator.drag((50, 50), (150, 120), release=False)
+    operator.until(lambda: session_of(operator).drag == "running", "the drag runs")
+    for key in "vr":
+        operator.page.keyboard.press(key)
+    operator.settle()
+    assert (operator.view.state.view, operator.view.state.zoom) == ("camera", 1.0)
+    operator.page.mouse.up()
+    operator.until(lambda: session_of(operator).drag == "none", "the drag has ended")
+    operator.page.keyboard.press("r")
+    operator.until(lambda: operator.view.state.zoom > 1, "the picture is larger")
+    assert np.allclose(operator.view.state.center_px or (), (100, 85), atol=TOLERANCE_PX)
+
+
 def test_a_polygon_is_clicked_and_closed_on_its_first_corner(operator: Operator) -> None:
     corners = [(60, 60), (200, 70), (180, 180), (70, 150)]
     for count, corner in enumerate(corners, start=1):
