@@ -7,7 +7,7 @@ import pytest
 from playwright.sync_api import Browser, expect
 
 from app.console import Console
-from app.events import Event, PointerDragged, PolygonClosed, VertexClicked
+from app.events import Event, PointerDragged, PolygonClosed, SectionToggled, VertexClicked
 from app.host import HostError, check_host
 from app.serving import announcements, serve
 from rotrecon.overlay import section_pixels
@@ -78,6 +78,13 @@ def test_sections_are_stepped_and_excluded(operator: Operator, scene: Simulated)
     assert operator.console.session.shown.excluded_sections == {number - 1}
     operator.page.get_by_role("button", name="Put this section back").click()
     operator.until(lambda: not operator.console.session.shown.excluded_sections, "the section counts again")
+    restore = operator.page.get_by_role("button", name="Put all back")
+    expect(restore).to_have_count(0)
+    operator.settle()
+    operator.send(SectionToggled(3))
+    operator.send(SectionToggled(number))
+    restore.click()
+    operator.until(lambda: not operator.console.session.shown.excluded_sections, "all sections count again")
 
 
 def test_a_click_on_the_object_lights_the_section_there(operator: Operator, scene: Simulated) -> None:
