@@ -158,7 +158,8 @@ def _applied(session: Session, event: Event) -> Session:
 
 
 def _dragging(session: Session, finished: bool) -> Session:
-    return replace(session, drag="none" if finished else "running")
+    """The session in a drag, of which an end leaves nothing, wherever it is."""
+    return replace(session, drag="none", preview=None) if finished else replace(session, drag="running")
 
 
 def _dragged(session: Session, event: PointerDragged) -> Session:

@@ -144,6 +144,13 @@ def test_a_cancelled_drag_draws_nothing_up_to_its_end(
     assert step(ended, AXIS).shown.axis == step(EMPTY, AXIS).shown.axis, "the next one counts"
 
 
+@given(sequences, drags)
+def test_no_end_of_a_drag_leaves_it_running(happened: list[Event], last: PointerDragged | HandleMoved) -> None:
+    ended = after(*happened, replace(last, finished=True))
+    assert ended.drag == "none"
+    assert ended.preview is None
+
+
 def test_escape_without_a_drag_leaves_the_next_one_alone() -> None:
     assert after(Cancelled(), AREA).shown.area is not None
     dragging = after(replace(AREA, finished=False), PageLeft())
