@@ -105,26 +105,34 @@ def fit_solid(
     if rms_m > settings.rms_over_radius * float(solid.radius_at(0.0)):
         advice = f"the pixels lie {1000 * rms_m:.1f} mm off the best {solid.kind}; {DRAW_CLOSE}"
         return FitFailure(FailureReason.NOT_ROUND, advice)
+    arc_rad = float(np.median(circles.arc_rad[used]))
     return Fit(
         solid=solid,
         section_state=state,
         along_m=along - float(axis.along(solid.center_m)),
         rms_m=rms_m,
-        arc_rad=float(np.median(circles.arc_rad[used])),
+        arc_rad=arc_rad,
         concave=bool(np.median(circles.concave[used]) > 0.5),
-        doubts=_doubts(solid, rms_m, int(circles.used.sum()), len(state), settings),
+        doubts=_doubts(solid, rms_m, arc_rad, int(circles.used.sum()), len(state), settings),
         axis_length_radius_m=axis_length_radius(circles.center_m[axis.on_axis]) if radii.shape == "sphere" else None,
     )
 
 
-def _doubts(solid: Primitive, rms_m: float, found: int, total: int, settings: Settings) -> tuple[str, ...]:
-    """Why a size is not to be relied on: pixels far off the solid, or few of the sections with a circle."""
+def _doubts(
+    solid: Primitive, rms_m: float, arc_rad: float, found: int, total: int, settings: Settings
+) -> tuple[str, ...]:
+    """Why a size is not to be relied on: pixels far off the solid, a short arc, or few sections with a circle."""
     doubts: list[str] = []
     radius_m = float(solid.radius_at(0.0))
     if rms_m > settings.doubtful_rms_over_radius * radius_m:
         doubts.append(
             f"doubtful: the pixels lie {1000 * rms_m:.1f} mm off a radius of {1000 * radius_m:.0f} mm; "
             "draw the area closer round the object, or bring the camera nearer"
+        )
+    if arc_rad < settings.doubtful_arc_rad:
+        doubts.append(
+            f"doubtful: only {np.degrees(arc_rad):.0f} degrees of the surface are seen; "
+            "draw the area over its whole width, or look at it from elsewhere"
         )
     if found < settings.doubtful_circles * total:
         doubts.append(

@@ -39,6 +39,8 @@ class Settings:
     """Above this the size was seen to be off by a third and more on simulated stereo: no tool is named."""
     doubtful_circles: float = 0.5
     """Below this share of sections with a circle, most of what was drawn is not the object: no tool is named."""
+    doubtful_arc_rad: float = 0.7
+    """Below this (40 degrees) a tenth of noise on the arc's height is a tenth of the radius: no tool is named."""
     rms_over_radius: float = 0.3
     """Pixels that lie farther off a solid than this share of its radius do not lie on it."""
     rod_length_over_diameter: float = 8.0
