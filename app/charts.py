@@ -77,8 +77,10 @@ def _evenly(along_m: Floats) -> Floats:
 
 
 def radius_scales(chart: tuple[Floats, ...]) -> dict[str, Any]:
-    """Ranges of the chart's axes."""
-    return {"x": {"time": False}, "y": {"range": _radius_range(chart)}}
+    """Ranges of the chart's axes; both are said, as the page now and then keeps a sliver of an earlier chart's."""
+    low, high = float(chart[0].min()), float(chart[0].max())
+    margin = 0.02 * (high - low)
+    return {"x": {"time": False, "range": (low - margin, high + margin)}, "y": {"range": _radius_range(chart)}}
 
 
 def _radius_range(columns: Sequence[Floats]) -> tuple[float, float]:

@@ -69,6 +69,14 @@ def test_without_a_single_circle_every_section_is_still_marked(fitted: Reconstru
     assert radius_chart(without_circles(fitted, list(range(count)), points=False), 0) is NO_CHART
 
 
+def test_the_ranges_hold_every_section(fitted: Reconstruction) -> None:
+    for result in (fitted, replace(fitted, fit=REFUSAL)):
+        chart = radius_chart(result, 0)
+        low, high = radius_scales(chart)["x"]["range"]
+        assert low < chart[ALONG].min() < chart[ALONG].max() < high
+        assert high - low < 1.1 * np.ptp(chart[ALONG])
+
+
 def test_there_is_no_chart_without_a_second_cut(fitted: Reconstruction) -> None:
     assert radius_chart(None, 0) is NO_CHART
     assert radius_chart(replace(fitted, fit=REFUSAL, sections=None, second_cut=None), 0) is NO_CHART
