@@ -1,7 +1,6 @@
 """Laws of the session: nothing raises, what is undone comes back, and nothing stale or off the frame gets in."""
 
 from dataclasses import replace
-from html import escape
 
 import pytest
 from hypothesis import given, settings
@@ -27,15 +26,9 @@ from app.events import (
     VertexTakenBack,
 )
 from app.hints import hint
-from app.object_drawing import ObjectDrawing, Pixel
-from app.result_text import hint_html, result_html, why_html
+from app.object_drawing import Pixel
 from app.session import HISTORY_LENGTH, Session, sentence, step
 from rotrecon.drawing import AreaOfInterest, DrawingError, ObjectAxis, check_area
-from rotrecon.fitting import Fit
-from rotrecon.reconstruct import Reconstruction, reconstruct
-from rotrecon.settings import Settings
-from rotrecon.simulation.simulate import simulate
-from rotrecon.tools import NoTool
 
 SIZE_PX = (640, 480)
 EMPTY = Session(SIZE_PX)
@@ -66,15 +59,6 @@ def after(*happened: Event, session: Session = EMPTY) -> Session:
 
 AREA = PointerDragged((100.0, 100.0), (200.0, 300.0))
 AXIS = PointerDragged((150.0, 120.0), (150.0, 280.0), shift=True)
-
-
-@pytest.fixture(scope="module")
-def measured() -> tuple[Session, Reconstruction]:
-    scene = simulate("pipe", 0, noise=None)
-    drawn = ObjectDrawing(scene.drawing.area, scene.drawing.axis)
-    session = replace(EMPTY, objects=(drawn,))
-    result = reconstruct(scene.frame, scene.drawing, Settings())
-    return after(Reconstructed(session.revision, result), session=session), result
 
 
 @given(sequences)
@@ -270,88 +254,3 @@ def test_a_dragged_area_too_small_to_be_meant_changes_nothing() -> None:
 def test_an_area_drawn_elsewhere_drops_the_axis_of_the_object_before() -> None:
     assert after(AREA, AXIS, PointerDragged((400.0, 100.0), (500.0, 300.0))).shown.axis is None
     assert after(AREA, AXIS, PointerDragged((90.0, 90.0), (220.0, 310.0))).shown.axis is not None
-
-
-def test_a_refusal_is_told_once_a_revision_and_not_during_a_drag() -> None:
-    dragging = after(AREA, replace(AXIS, finished=False))
-    dragging = step(dragging, Reconstructed(dragging.revision, Refused("the axis has no length")))
-    assert dragging.notice is None
-    released = step(dragging, AXIS)
-    assert released.notice is not None
-    assert released.notice.text == "The axis has no length."
-    again = step(released, Reconstructed(released.revision, Refused("the axis has no length")))
-    assert again.notice == released.notice
-
-
-def test_a_notice_goes_with_the_drawing_it_is_about() -> None:
-    session = after(AREA, AXIS)
-    session = step(session, Reconstructed(session.revision, Refused("the axis has no length")))
-    told = session.notice
-    assert told is not None
-    assert step(session, ToolChosen("axis")).notice is told
-    moved = step(session, HandleMoved("axis", 1, (160.0, 250.0)))
-    assert moved.notice is None
-    again = step(moved, Reconstructed(moved.revision, Refused("the axis has no length"))).notice
-    assert again is not None
-    assert again != told, "it is told once more"
-    assert step(session, Undone()).notice is None
-
-
-def test_the_hint_tells_of_a_measurement_only_when_it_is_one_of_the_drawing_shown(
-    measured: tuple[Session, Reconstruction],
-) -> None:
-    assert "Measured." in hint(measured[0])
-    assert hint(after(AREA, AXIS)).startswith("Measuring")
-    refused = after(AREA, AXIS)
-    refused = step(refused, Reconstructed(refused.revision, Refused("the axis has no length")))
-    assert hint(refused) == "The axis has no length."
-    assert hint(step(refused, HandleMoved("axis", 1, (160.0, 250.0)))).startswith("Measuring")
-    dragged = HandleMoved("axis", 1, (160.0, 250.0), finished=False)
-    assert hint(step(refused, dragged)) == hint(step(measured[0], dragged)), "it does not flicker during a drag"
-
-
-def test_thin_evidence_and_refusals_are_said_in_amber(measured: tuple[Session, Reconstruction]) -> None:
-    good, result = measured
-    assert "rr-amber" not in hint_html(good)
-    assert "not certain, no interval" in result_html(good)
-    assert "doubtful" not in result_html(good)
-    assert "Candidates, by score" in why_html(good)
-    assert "%" not in why_html(good)
-    assert isinstance(result.fit, Fit)
-    doubts = ("doubtful: only 3 of 90 sections have a circle", "doubtful: <noise>")
-    thin = replace(result, fit=replace(result.fit, doubts=doubts), tool=NoTool(doubts))
-    doubtful = step(good, Reconstructed(good.revision, thin))
-    assert hint(doubtful) == "Doubtful: only 3 of 90 sections have a circle."
-    assert "rr-amber" in hint_html(doubtful)
-    assert "<b>No tool</b> &ndash; doubtful, see" in result_html(doubtful)
-    assert all(escape(sentence(doubt)) in why_html(doubtful) for doubt in doubts)
-    refused = step(good, Reconstructed(good.revision, Refused("the axis has no length")))
-    assert "rr-amber" in hint_html(refused)
-    assert "Not measured" in result_html(refused)
-    assert "The axis has no length." in why_html(refused)
-    assert "Nothing measured yet." in result_html(EMPTY)
-    assert "rr-amber" not in hint_html(step(refused, HandleMoved("axis", 1, (300.0, 250.0))))
-
-
-def test_a_section_is_taken_out_and_put_back_and_forgotten_with_the_drawing(
-    measured: tuple[Session, Reconstruction],
-) -> None:
-    session, result = measured
-    assert session.reconstruction is result
-    out = step(session, SectionToggled(5))
-    assert out.shown.excluded_sections == {5}
-    assert not out.up_to_date
-    back = after(Reconstructed(out.revision, result), SectionToggled(5), session=out)
-    assert back.shown.excluded_sections == frozenset()
-    assert step(out, SectionsRestored()).objects == session.objects
-    assert step(session, SectionsRestored()) == session
-    assert step(session, SectionToggled(100_000)) == session
-    assert step(out, HandleMoved("axis", 0, (300.0, 200.0))).shown.excluded_sections == frozenset()
-
-
-def test_clearing_takes_the_result_away() -> None:
-    session = after(AREA, AXIS)
-    session = step(session, Reconstructed(session.revision, Refused("no")))
-    cleared = step(session, Cleared())
-    assert cleared.measured is None
-    assert cleared.up_to_date
