@@ -154,7 +154,7 @@ def import_(
     name: Annotated[str | None, typer.Option(help="The scene's name.")] = None,
 ) -> None:
     """Make a scene folder from a foreign recording."""
-    camera = None if intrinsics is None else Intrinsics(*_numbers("--intrinsics", intrinsics, ",", 4))
+    camera = None if intrinsics is None else _intrinsics(intrinsics)
     shape = None if size is None else _size(size)
     capture = import_scene(source, out, ImportOptions(depth, depth_scale, camera, shape, topic, name))
     typer.echo(f"wrote {out}: {capture.name}")
@@ -169,14 +169,12 @@ def _size(text: str) -> tuple[int, int]:
     return (int(width), int(height))
 
 
-def _numbers(option: str, text: str, separator: str, count: int) -> list[float]:
+def _intrinsics(text: str) -> Intrinsics:
     try:
-        numbers = [float(word) for word in text.split(separator)]
-    except ValueError:
-        numbers = []
-    if len(numbers) != count:
-        raise typer.BadParameter(f"{option} {text} is not {count} numbers; write them with '{separator}' between")
-    return numbers
+        fx, fy, cx, cy = (float(word) for word in text.split(","))
+    except ValueError as error:
+        raise typer.BadParameter(f"--intrinsics {text} is not four numbers; write them as fx,fy,cx,cy") from error
+    return Intrinsics(fx, fy, cx, cy)
 
 
 @cli.command()

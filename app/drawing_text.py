@@ -21,11 +21,6 @@ def parse_axis(text: str) -> ObjectAxis:
     return ObjectAxis(*points)
 
 
-def format_points(points_px: tuple[tuple[float, float], ...]) -> str:
-    """The text that parses to these points."""
-    return " ".join(f"{u:g},{v:g}" for u, v in points_px)
-
-
 def _parse_points(what: str, text: str) -> list[tuple[float, float]]:
     points: list[tuple[float, float]] = []
     for word in text.split():

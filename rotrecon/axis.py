@@ -120,9 +120,13 @@ class SpaceSections:
         """Points (n, 3) of the chosen (S,) sections, camera coordinates."""
         return self._points(self.pixel[np.repeat(sections, np.diff(self.start))])
 
+    def pixels_in(self, section: int) -> Indices:
+        """Index (n,) into the flattened frame of the pixels of one section, from one side to the other."""
+        return self.pixel[self.start[section] : self.start[section + 1]]
+
     def points_in(self, section: int) -> Cloud:
         """Points (n, 3) of one section, camera coordinates."""
-        return self._points(self.pixel[self.start[section] : self.start[section + 1]])
+        return self._points(self.pixels_in(section))
 
     def in_plane(self, points_m: Cloud | Floats) -> Floats:
         """Points (..., 2) in a section's own plane, metres from the axis: across, and toward the camera."""

@@ -125,8 +125,7 @@ def section_pixels(result: Reconstruction, section: int) -> Floats:
     """Pixels (n, 2) of one section of the second cut."""
     if result.sections is None:
         return np.zeros((0, 2))
-    start, end = result.sections.start[section : section + 2]
-    v, u = np.divmod(result.sections.pixel[start:end], result.frame.camera.width)
+    v, u = np.divmod(result.sections.pixels_in(section), result.frame.camera.width)
     return np.stack([u, v], axis=1).astype(np.float64)
 
 
@@ -134,8 +133,8 @@ def first_cut_line(result: Reconstruction, section: int) -> int | None:
     """The line of pixels of the first cut that holds most of one section of the second cut; None for no pixels."""
     if result.sections is None:
         return None
-    pixel = result.sections.pixel[result.sections.start[section] : result.sections.start[section + 1]]
-    rows, _ = np.nonzero(np.isin(result.segments.pixel, pixel) & result.segmentation.kept)
+    in_section = np.isin(result.segments.pixel, result.sections.pixels_in(section))
+    rows, _ = np.nonzero(in_section & result.segmentation.kept)
     return int(np.bincount(rows).argmax()) if len(rows) else None
 
 
