@@ -7,7 +7,7 @@ import numpy as np
 
 from rotrecon.arrays import Floats
 from rotrecon.circles import SectionState
-from rotrecon.fitting import Fit
+from rotrecon.outcome import Fit
 from rotrecon.reconstruct import Reconstruction
 
 USED, ODD, EXCLUDED, PROFILE, MISSING, LIT = "#3c93d0", "#d55e00", "#8a8a8a", "#009e73", "#e69f00", "#cc79a7"

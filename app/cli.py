@@ -14,8 +14,8 @@ from rotrecon.answer import answer, cannot
 from rotrecon.drawing import Drawing, DrawingError
 from rotrecon.errors import SceneError
 from rotrecon.files import write_whole
-from rotrecon.fitting import FitFailure
 from rotrecon.frame import Capture, Frame, FrameUnavailable
+from rotrecon.outcome import FitFailure
 from rotrecon.overlay import outlines, with_outlines, with_segmentation
 from rotrecon.reconstruct import Reconstruction, reconstruct
 from rotrecon.scene.formats.image import encode_png

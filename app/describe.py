@@ -3,7 +3,7 @@
 from typing import Any
 
 from rotrecon.answer import answer as answer_of
-from rotrecon.fitting import Fit
+from rotrecon.outcome import Fit
 from rotrecon.reconstruct import Reconstruction
 
 

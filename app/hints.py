@@ -2,7 +2,7 @@
 
 from app.events import Refused
 from app.session import Session, sentence
-from rotrecon.fitting import Fit, FitFailure
+from rotrecon.outcome import Fit, FitFailure
 from rotrecon.reconstruct import Reconstruction
 
 

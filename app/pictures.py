@@ -8,8 +8,8 @@ import numpy as np
 from app.object_drawing import Pixel
 from app.page import LayerName
 from rotrecon.arrays import Bytes
-from rotrecon.fitting import Fit
 from rotrecon.frame import Frame
+from rotrecon.outcome import Fit
 from rotrecon.overlay import (
     Stage,
     blend,

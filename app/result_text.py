@@ -8,7 +8,7 @@ from typing import Any
 from app.hints import hint, warning
 from app.session import Session, sentence
 from rotrecon.answer import answer
-from rotrecon.fitting import Fit
+from rotrecon.outcome import Fit
 from rotrecon.reconstruct import Reconstruction
 from rotrecon.tools import Tool, ToolProposal
 

@@ -5,7 +5,7 @@ import numpy as np
 from app.charts import LIT, ODD, PROFILE, USED, section_count
 from rotrecon.arrays import Floats
 from rotrecon.circles import SectionState
-from rotrecon.fitting import Fit
+from rotrecon.outcome import Fit
 from rotrecon.overlay import first_cut_line
 from rotrecon.reconstruct import Reconstruction
 

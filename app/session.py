@@ -34,7 +34,7 @@ from app.object_drawing import (
     with_corner,
 )
 from rotrecon.drawing import AreaOfInterest, DrawingError, ObjectAxis, check_area
-from rotrecon.fitting import FitFailure
+from rotrecon.outcome import FitFailure
 from rotrecon.primitives import KINDS
 from rotrecon.reconstruct import Reconstruction
 

@@ -6,7 +6,7 @@ import numpy as np
 
 from rotrecon.arrays import Floats
 from rotrecon.circles import SectionState
-from rotrecon.fitting import Fit, FitFailure
+from rotrecon.outcome import Fit, FitFailure
 from rotrecon.primitives import Frustum, Primitive
 from rotrecon.reconstruct import Reconstruction
 from rotrecon.tools import NoTool, ToolProposal
@@ -86,10 +86,10 @@ def _profile(result: Reconstruction, fit: Fit) -> list[list[float | None]]:
 def _candidates(result: Reconstruction) -> list[dict[str, Any]]:
     """The kinds considered; the one that was chosen goes by its own name, rod rather than cylinder."""
     assert result.solid is not None
-    shape = "cylinder" if result.solid.kind == "rod" else result.solid.kind
+    is_rod = result.solid.kind == "rod"
     return [
         {
-            "kind": result.solid.kind if candidate.radii.shape == shape else candidate.radii.shape,
+            "kind": "rod" if is_rod and candidate.kind == "cylinder" else candidate.kind,
             "diameter_mm": _mm(2 * candidate.radius_m),
             "score": round(candidate.score, 4),
         }

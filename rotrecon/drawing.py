@@ -1,6 +1,7 @@
 """What the operator draws on the camera frame, and the lines of pixels it cuts the object into (paper 3.1)."""
 
 from dataclasses import dataclass
+from typing import Literal
 
 import cv2
 import numpy as np
@@ -34,6 +35,20 @@ class ObjectAxis:
     end_px: tuple[float, float]
 
 
+Direction = Literal["free", "vertical", "drawn", "plane"]
+"""How an object's axis lies: in any way, along the base's z, along the stroke over its surface in space, or square to
+the plane that most of the area's other pixels lie on."""
+
+
+@dataclass(frozen=True)
+class Constraints:
+    """What the operator knows of an object before it is measured."""
+
+    radius_m: tuple[float, float] | None = None
+    """Lowest and highest; equal for a radius that is known."""
+    direction: Direction = "free"
+
+
 @dataclass(frozen=True)
 class Drawing:
     """Everything the operator said about one object."""
@@ -44,6 +59,7 @@ class Drawing:
     """None: the program decides."""
     excluded_sections: frozenset[int] = frozenset()
     """Sections of the second cut that the operator took out by hand."""
+    constraints: Constraints = Constraints()
 
 
 @dataclass(frozen=True, eq=False)

@@ -8,7 +8,7 @@ import numpy as np
 
 from rotrecon.arrays import Bools, Bytes, Cloud, Floats, freeze
 from rotrecon.camera import PinholeCamera
-from rotrecon.fitting import Fit
+from rotrecon.outcome import Fit
 from rotrecon.primitives import Frustum, Sphere, basis_across
 from rotrecon.reconstruct import Reconstruction
 from rotrecon.segmentation import PixelHistory, Segmentation

@@ -8,11 +8,11 @@ from rotrecon.arrays import Bools, Cloud, Floats, Indices, blocks
 from rotrecon.axis import FittedAxis, SpaceSections, cut_in_space, fit_axis, span_along
 from rotrecon.circles import SectionCircles, SectionState, base_points, circumcircles
 from rotrecon.drawing import CrossSegments, Drawing, DrawingError, cut_sections
-from rotrecon.fitting import FailureReason, Fit, FitFailure, fit_solid, why_no_axis
 from rotrecon.frame import Frame
+from rotrecon.outcome import Candidate, FailureReason, Fit, FitFailure
 from rotrecon.primitives import Primitive
-from rotrecon.radii import SHAPES, Shape, fit_radii
-from rotrecon.recognition import Candidate, choose, rank
+from rotrecon.radii import SHAPES, Shape, choose, fit_radii, rank
+from rotrecon.section_fit import as_candidates, fit_solid, why_no_axis
 from rotrecon.segmentation import Segmentation, segment
 from rotrecon.settings import Settings
 from rotrecon.tools import NoTool, ToolProposal, propose_tool
@@ -128,20 +128,20 @@ def _with_solid(
     circles, settings, kind = second.circles, result.settings, result.drawing.kind
     along = axis.along(circles.center_m)
     curves = (fit_radii(shape, along, circles.radius_m, circles.used, settings) for shape in SHAPES)
-    candidates = rank([curve for curve in curves if curve], along, circles.used, settings)
-    chosen = choose(candidates, kind, settings)
+    ranked = rank([curve for curve in curves if curve], along, circles.used, settings)
+    result = replace(result, candidates=as_candidates(ranked))
+    chosen = choose(ranked, kind, settings)
     if chosen is None:
-        best = candidates[0].radii.shape
+        best = ranked[0].radii.shape
         advice = f"the sections speak for a {best} rather than a {kind}; choose that, or let the program decide"
-        return replace(result, candidates=candidates, fit=FitFailure(FailureReason.NOT_THIS_KIND, advice))
+        return replace(result, fit=FitFailure(FailureReason.NOT_THIS_KIND, advice))
     fit = fit_solid(chosen.radii, kind, axis, circles, sections, settings)
     if isinstance(fit, FitFailure):
-        return replace(result, candidates=candidates, fit=fit)
+        return replace(result, fit=fit)
     T_base_camera = result.frame.T_base_camera
     solid = fit.solid.moved(T_base_camera)
     return replace(
         result,
-        candidates=candidates,
         fit=fit,
         first_cut_radius_m=_radius_from(first, chosen.radii.shape, settings),
         solid=solid,

@@ -7,8 +7,8 @@ import numpy as np
 from rotrecon.arrays import Floats
 from rotrecon.camera import PinholeCamera
 from rotrecon.drawing import AreaOfInterest, Drawing, ObjectAxis
-from rotrecon.fitting import Fit
 from rotrecon.frame import Frame
+from rotrecon.outcome import Fit
 from rotrecon.primitives import Frustum, Kind, Primitive, Sphere, basis_across
 from rotrecon.reconstruct import Reconstruction
 from rotrecon.simulation.raycast import first_hit

@@ -7,7 +7,7 @@ import pytest
 
 from app.charts import NO_CHART, RADIUS_SERIES, radius_chart, radius_scales
 from rotrecon.circles import SectionCircles, SectionState
-from rotrecon.fitting import FailureReason, Fit, FitFailure
+from rotrecon.outcome import FailureReason, Fit, FitFailure
 from rotrecon.reconstruct import Cut, Reconstruction, reconstruct
 from rotrecon.settings import Settings
 from rotrecon.simulation.simulate import simulate

@@ -7,8 +7,8 @@ import pytest
 
 from rotrecon.circles import SectionState
 from rotrecon.drawing import AreaOfInterest, Drawing, DrawingError, ObjectAxis
-from rotrecon.fitting import FailureReason, FitFailure
 from rotrecon.frame import Frame
+from rotrecon.outcome import FailureReason, FitFailure
 from rotrecon.reconstruct import reconstruct
 from rotrecon.settings import Settings
 from rotrecon.tools import NoTool, ToolProposal

@@ -5,7 +5,7 @@ from dataclasses import replace
 import pytest
 
 from app.section_drawing import line_text, section_svg, section_text
-from rotrecon.fitting import FailureReason, FitFailure
+from rotrecon.outcome import FailureReason, FitFailure
 from rotrecon.overlay import first_cut_line
 from rotrecon.reconstruct import Reconstruction, reconstruct
 from rotrecon.settings import Settings

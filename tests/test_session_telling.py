@@ -19,7 +19,7 @@ from app.hints import hint
 from app.object_drawing import ObjectDrawing
 from app.result_text import hint_html, result_html, why_html
 from app.session import Session, sentence, step
-from rotrecon.fitting import Fit
+from rotrecon.outcome import Fit
 from rotrecon.reconstruct import Reconstruction, reconstruct
 from rotrecon.settings import Settings
 from rotrecon.simulation.simulate import simulate

@@ -9,8 +9,8 @@ from app.bench.poses import KINDS, Pose, poses
 from app.bench.variations import EXACT, NOISY, VARIATIONS, Variation
 from rotrecon.arrays import Floats
 from rotrecon.drawing import Drawing
-from rotrecon.fitting import Fit
 from rotrecon.frame import Frame
+from rotrecon.outcome import Fit
 from rotrecon.reconstruct import reconstruct
 from rotrecon.settings import Settings
 

@@ -10,9 +10,10 @@ from app.bench.frames import Task
 from rotrecon.axis import cut_in_space, fit_axis
 from rotrecon.circles import base_points, circumcircles
 from rotrecon.drawing import cut_sections
-from rotrecon.fitting import Fit, fit_solid
+from rotrecon.outcome import Fit
 from rotrecon.radii import SHAPES, fit_radii
 from rotrecon.reconstruct import Reconstruction, reconstruct, usable_depth
+from rotrecon.section_fit import fit_solid
 from rotrecon.segmentation import segment
 from rotrecon.settings import Settings
 

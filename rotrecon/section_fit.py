@@ -1,62 +1,16 @@
-"""A solid of revolution from its sections, or the reason there is none (paper 3.4, 3.5)."""
+"""A solid of revolution from its section circles, or the reason there is none (paper 3.4, 3.5)."""
 
-from dataclasses import dataclass
-from enum import StrEnum
 from typing import Literal
 
 import numpy as np
 
-from rotrecon.arrays import Bytes, Cloud, Floats, blocks, freeze
+from rotrecon.arrays import Cloud, Floats, blocks
 from rotrecon.axis import Axis, FittedAxis, SpaceSections
 from rotrecon.circles import SectionCircles, SectionState
+from rotrecon.outcome import DRAW_CLOSE, Candidate, FailureReason, Fit, FitFailure
 from rotrecon.primitives import Frustum, Kind, Primitive, Sphere
-from rotrecon.radii import RadiusFit, axis_length_radius
+from rotrecon.radii import RadiusFit, RankedCurve, axis_length_radius
 from rotrecon.settings import Settings
-
-DRAW_CLOSE = "draw the area as a polygon close round the object, and the axis along its middle"
-
-
-class FailureReason(StrEnum):
-    """Why nothing could be fitted."""
-
-    OUT_OF_REACH = "out_of_reach"
-    FLAT = "flat"
-    TOO_FEW_SECTIONS = "too_few_sections"
-    NO_AXIS = "no_axis"
-    NOT_THIS_KIND = "not_this_kind"
-    NOT_ROUND = "not_round"
-
-
-@dataclass(frozen=True)
-class FitFailure:
-    """Nothing could be fitted: why, and what the operator can do."""
-
-    reason: FailureReason
-    advice: str
-
-
-@dataclass(frozen=True, eq=False)
-class Fit:
-    """A solid in camera coordinates, and how well the sections it rests on agree with it."""
-
-    solid: Primitive
-    section_state: Bytes
-    """(S,) SectionState of every section of the second cut."""
-    along_m: Floats
-    """(S,) positions of the section centres along the solid's direction, from its middle."""
-    rms_m: float
-    """Orthogonal, over the pixels of the used sections."""
-    arc_rad: float
-    """Median visible arc of the used sections."""
-    concave: bool
-    """The surface is seen from inside."""
-    doubts: tuple[str, ...] = ()
-    """Why no tool should rely on this size, and what to draw instead."""
-    axis_length_radius_m: float | None = None
-    """Of a sphere: the radius by equation (16), the paper's second variant."""
-
-    def __post_init__(self) -> None:
-        freeze(self)
 
 
 def why_no_axis(circles: SectionCircles, reachable: bool, settings: Settings) -> FitFailure:
@@ -81,6 +35,14 @@ def why_no_axis(circles: SectionCircles, reachable: bool, settings: Settings) ->
     else:
         advice = f"{found} of {total} sections have a circle, too few; {DRAW_CLOSE}"
     return FitFailure(reason, advice)
+
+
+def as_candidates(ranked: tuple[RankedCurve, ...]) -> tuple[Candidate, ...]:
+    """The curves as the kinds they stand for, in their order."""
+    return tuple(
+        Candidate(curve.radii.shape, curve.radius_m, curve.score, float(np.arctan(curve.radii.slope)))
+        for curve in ranked
+    )
 
 
 def fit_solid(

@@ -1,0 +1,91 @@
+"""What a measurement ends with: a solid with its uncertainty, or a named reason why there is none."""
+
+from dataclasses import dataclass
+from enum import StrEnum
+
+from rotrecon.arrays import Bytes, Floats, freeze
+from rotrecon.primitives import Kind, Primitive
+
+DRAW_CLOSE = "draw the area as a polygon close round the object, and the axis along its middle"
+
+
+class FailureReason(StrEnum):
+    """Why nothing could be fitted."""
+
+    OUT_OF_REACH = "out_of_reach"
+    FLAT = "flat"
+    TOO_FEW_SECTIONS = "too_few_sections"
+    NO_AXIS = "no_axis"
+    NOT_THIS_KIND = "not_this_kind"
+    NOT_ROUND = "not_round"
+    SHORT_ARC = "short_arc"
+    TOO_THIN = "too_thin"
+    TWO_OBJECTS = "two_objects"
+    OFF_AXIS = "off_axis"
+    CONSTRAINED = "constrained"
+
+
+@dataclass(frozen=True)
+class FitFailure:
+    """Nothing could be fitted: why, and what the operator can do."""
+
+    reason: FailureReason
+    advice: str
+
+
+Range = tuple[float, float]
+"""A 95 % interval, lowest and highest."""
+
+
+@dataclass(frozen=True)
+class Intervals:
+    """95 % intervals of a solid's numbers, in the units of the numbers themselves."""
+
+    diameter_m: Range
+    center_m: float
+    """Radius of the ball round the solid's middle that holds the true one, position along an open axis left out."""
+    direction_rad: float | None = None
+    """Half angle of the cone round the axis that holds the true one; None for a sphere."""
+    half_angle_rad: Range | None = None
+    """Of a cone."""
+    length_m: Range | None = None
+    """None for a sphere, or where an end is open."""
+
+
+@dataclass(frozen=True)
+class Candidate:
+    """A kind that was considered."""
+
+    kind: Kind
+    radius_m: float
+    """At the middle of its length."""
+    score: float
+    """Share of belief from 0 to 1; those of all candidates add up to 1."""
+    half_angle_rad: float = 0.0
+    """Of a cone."""
+
+
+@dataclass(frozen=True, eq=False)
+class Fit:
+    """A solid in camera coordinates, and how well the sections it rests on agree with it."""
+
+    solid: Primitive
+    section_state: Bytes
+    """(S,) SectionState of every section of the second cut."""
+    along_m: Floats
+    """(S,) positions of the section centres along the solid's direction, from its middle."""
+    rms_m: float
+    """Orthogonal, over the pixels of the used sections."""
+    arc_rad: float
+    """Median visible arc of the used sections."""
+    concave: bool
+    """The surface is seen from inside."""
+    doubts: tuple[str, ...] = ()
+    """Why no tool should rely on this size, and what to draw instead."""
+    axis_length_radius_m: float | None = None
+    """Of a sphere: the radius by equation (16), the paper's second variant."""
+    intervals: Intervals | None = None
+    """None by the paper's method, which has no measure of them."""
+
+    def __post_init__(self) -> None:
+        freeze(self)
