@@ -8,7 +8,7 @@ from typing import Annotated, Literal
 import typer
 
 from app.describe import describe, describe_result
-from app.drawing_text import parse_area, parse_axis
+from app.drawing_text import parse_area, parse_axis, stroke_text
 from app.host import HostError
 from rotrecon.answer import answer, cannot
 from rotrecon.drawing import Drawing, DrawingError
@@ -56,7 +56,9 @@ def main() -> None:
 def fit(
     scene: Scene,
     area: Annotated[str, typer.Option(help='Corners "u,v u,v" of a rectangle, or of a polygon if more, px.')],
-    axis: Annotated[str, typer.Option(help='A stroke "u,v u,v" along the object, px.')],
+    axis: Annotated[
+        str | None, typer.Option(help='A stroke "u,v u,v" along the object, px; proposed when left out.')
+    ] = None,
     kind: Annotated[
         Literal["auto", "cylinder", "rod", "sphere", "cone"], typer.Option(help="What it is, if you know.")
     ] = "auto",
@@ -67,7 +69,7 @@ def fit(
     layers: Layers = 2,
 ) -> None:
     """Measure the object that a drawing points at. Exits with 0 for a result, 3 for a reasoned "cannot"."""
-    drawing = Drawing(parse_area(area), parse_axis(axis), None if kind == "auto" else kind)
+    drawing = Drawing(parse_area(area), None if axis is None else parse_axis(axis), None if kind == "auto" else kind)
     settings = Settings(method=method, layers=layers, tools=default_tools() if tools is None else read_tools(tools))
     if overlay is not None and overlay.suffix.lower() != ".png":
         raise typer.BadParameter(f"--overlay {overlay} is not a PNG; name a file that ends in .png")
@@ -79,9 +81,14 @@ def fit(
     result = reconstruct(frame, drawing, settings)
     if overlay is not None:
         _write_overlay(overlay, result)
-    typer.echo(_json(answer(result)) if json_ else describe_result(result))
+    typer.echo(_json(answer(result)) if json_ else _in_words(result, proposed=axis is None))
     if isinstance(result.fit, FitFailure):
         raise typer.Exit(CANNOT)
+
+
+def _in_words(result: Reconstruction, proposed: bool) -> str:
+    words = describe_result(result)
+    return f"{words}\n  axis proposed: --axis {stroke_text(result.drawing.stroke)}" if proposed else words
 
 
 def _json(content: dict[str, object]) -> str:

@@ -21,6 +21,11 @@ def parse_axis(text: str) -> ObjectAxis:
     return ObjectAxis(*points)
 
 
+def stroke_text(axis: ObjectAxis) -> str:
+    """A stroke as `parse_axis` reads it, to a tenth of a pixel and in quotes."""
+    return '"' + " ".join(f"{u:.1f},{v:.1f}" for u, v in (axis.start_px, axis.end_px)) + '"'
+
+
 def _parse_points(what: str, text: str) -> list[tuple[float, float]]:
     points: list[tuple[float, float]] = []
     for word in text.split():

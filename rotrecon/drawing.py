@@ -54,12 +54,20 @@ class Drawing:
     """Everything the operator said about one object."""
 
     area: AreaOfInterest
-    axis: ObjectAxis
+    axis: ObjectAxis | None = None
+    """None: the program proposes one."""
     kind: Kind | None = None
     """None: the program decides."""
     excluded_sections: frozenset[int] = frozenset()
     """Sections of the second cut that the operator took out by hand."""
     constraints: Constraints = Constraints()
+
+    @property
+    def stroke(self) -> ObjectAxis:
+        """The axis, of a drawing that has one; raises ValueError."""
+        if self.axis is None:
+            raise ValueError("the drawing has no axis; propose one first")
+        return self.axis
 
 
 @dataclass(frozen=True, eq=False)
@@ -95,7 +103,7 @@ def cut_sections(area: AreaOfInterest, axis: ObjectAxis, size_px: tuple[int, int
     Raises DrawingError for a drawing that cannot be cut. Sections and lines without a pixel of the area are left out.
     """
     check_area(area, size_px)
-    mask = _area_mask(area, size_px)
+    mask = area_mask(area, size_px)
     start, end = np.array(axis.start_px, dtype=np.float64), np.array(axis.end_px, dtype=np.float64)
     _check_on_frame("the axis's end", np.stack([start, end]), size_px)
     length_px = float(np.linalg.norm(end - start))
@@ -155,8 +163,8 @@ def check_area(area: AreaOfInterest, size_px: tuple[int, int]) -> None:
         raise DrawingError("the area's outline crosses or touches itself; draw its corners in order round the object")
 
 
-def _area_mask(area: AreaOfInterest, size_px: tuple[int, int]) -> Bytes:
-    """Mask (height, width) of an area."""
+def area_mask(area: AreaOfInterest, size_px: tuple[int, int]) -> Bytes:
+    """Mask (height, width), 0 or 1, of an area that `check_area` has passed."""
     width, height = size_px
     mask = np.zeros((height, width), dtype=np.uint8)
     cv2.fillPoly(mask, [np.rint(np.array(area.vertices_px)).astype(np.int32)], 1)

@@ -6,6 +6,7 @@ import numpy as np
 
 from rotrecon.arrays import Bools, Cloud, Floats, Indices, blocks
 from rotrecon.axis import FittedAxis, SpaceSections, cut_in_space, fit_axis, span_along
+from rotrecon.axis_proposal import propose_axis
 from rotrecon.circles import SectionCircles, SectionState, base_points, circumcircles
 from rotrecon.drawing import CrossSegments, Drawing, DrawingError, cut_sections
 from rotrecon.frame import Frame
@@ -57,8 +58,10 @@ def reconstruct(frame: Frame, drawing: Drawing, settings: Settings) -> Reconstru
     """Measure the object that a drawing points at, by the paper's method.
 
     Raises DrawingError for a drawing that cannot be used on this frame; what the data cannot hold is a FitFailure.
+    The drawing of the result has an axis, proposed where none was drawn.
     """
-    segments = cut_sections(drawing.area, drawing.axis, (frame.camera.width, frame.camera.height))
+    drawing = _with_axis(frame, drawing, settings)
+    segments = cut_sections(drawing.area, drawing.stroke, (frame.camera.width, frame.camera.height))
     segmentation = segment(*usable_depth(frame, segments), segments.inside, settings)
     first = _cut(*base_points(frame.points_m, segments.pixel, segmentation.kept), settings)
     reachable = bool(segmentation.history.any())
@@ -72,6 +75,16 @@ def reconstruct(frame: Frame, drawing: Drawing, settings: Settings) -> Reconstru
     second = _without(settled, drawing.excluded_sections, settings)
     result = replace(result, sections=sections, second_cut=second, fit=why_no_axis(second.circles, True, settings))
     return result if second.axis is None else _with_solid(result, first, second, second.axis, sections)
+
+
+def _with_axis(frame: Frame, drawing: Drawing, settings: Settings) -> Drawing:
+    """The drawing with the axis that was drawn, or one that is proposed; DrawingError where nothing stands out."""
+    if drawing.axis is not None:
+        return drawing
+    proposed = propose_axis(frame, drawing.area, settings)
+    if isinstance(proposed, FitFailure):
+        raise DrawingError(proposed.advice)
+    return replace(drawing, axis=proposed)
 
 
 def usable_depth(frame: Frame, segments: CrossSegments) -> tuple[Cloud, Bools]:

@@ -75,7 +75,7 @@ def compose(frame: Frame, drawing: Drawing, settings: Settings, steps: Steps) ->
 
 def _object_pixels(frame: Frame, drawing: Drawing, settings: Settings, steps: Steps) -> tuple[Indices, Bools]:
     """Index (S, W) of the pixels of the cross segments, and which (S, W) are the object's."""
-    segments = cut_sections(drawing.area, drawing.axis, (frame.camera.width, frame.camera.height))
+    segments = cut_sections(drawing.area, drawing.stroke, (frame.camera.width, frame.camera.height))
     depth_m, usable = usable_depth(frame, segments)
     kept = segment(depth_m, usable, segments.inside, settings).kept
     return segments.pixel, kept if steps.mask is None else steps.mask(kept, segments.pixel) & usable

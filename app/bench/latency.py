@@ -55,7 +55,7 @@ def _strokes(console: Console, page: WirePage, simulated: Simulated, releases: i
     corners = np.array(simulated.drawing.area.vertices_px)
     _drag(console, page, tuple(corners.min(axis=0)), tuple(corners.max(axis=0)), shift=False)
     rng = np.random.default_rng(0)
-    stroke = np.array([simulated.drawing.axis.start_px, simulated.drawing.axis.end_px])
+    stroke = np.array([simulated.drawing.stroke.start_px, simulated.drawing.stroke.end_px])
     durations: list[float] = []
     for _ in range(releases):
         start, end = stroke + rng.uniform(-HAND_PX, HAND_PX, (2, 2))

@@ -42,7 +42,7 @@ class Pose:
     @property
     def axis(self) -> Axis:
         """The true one, the way the stroke goes."""
-        solid, stroke = self.simulated.solid_in_camera, self.simulated.drawing.axis
+        solid, stroke = self.simulated.solid_in_camera, self.simulated.drawing.stroke
         start, ahead = CAMERA.project(solid.center_m + np.outer([0, 1e-3], solid.direction))
         forward = (ahead - start) @ np.subtract(stroke.end_px, stroke.start_px) > 0
         return Axis(solid.center_m, solid.direction if forward else -solid.direction)

@@ -68,7 +68,7 @@ def _stages(result: Reconstruction) -> dict[str, Callable[[], object]]:
     assert cylinder is not None
     size_px = (frame.camera.width, frame.camera.height)
     return {
-        "cross segments (3.1)": lambda: cut_sections(drawing.area, drawing.axis, size_px),
+        "cross segments (3.1)": lambda: cut_sections(drawing.area, drawing.stroke, size_px),
         "segmentation (3.2)": lambda: segment(depth_m, usable, segments.inside, SETTINGS),
         "circles of the first cut (3.3)": lambda: circumcircles(
             *base_points(frame.points_m, segments.pixel, kept), SETTINGS

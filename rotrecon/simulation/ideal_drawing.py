@@ -43,13 +43,13 @@ def ideal_drawing(solid: Primitive, camera: PinholeCamera) -> Drawing:
 def perturb(drawing: Drawing, rng: np.random.Generator, sigma_px: float = 3.0) -> Drawing:
     """The same drawing by a less steady hand: every vertex and both ends of the stroke moved at random."""
     area = np.array(drawing.area.vertices_px)
-    stroke = np.array([drawing.axis.start_px, drawing.axis.end_px])
+    stroke = np.array([drawing.stroke.start_px, drawing.stroke.end_px])
     return _drawing(area + sigma_px * rng.standard_normal(area.shape), stroke + sigma_px * rng.standard_normal((2, 2)))
 
 
 def as_arguments(drawing: Drawing) -> tuple[str, str]:
     """Area and axis as the command line takes them: "u,v u,v ..."."""
-    stroke = (drawing.axis.start_px, drawing.axis.end_px)
+    stroke = (drawing.stroke.start_px, drawing.stroke.end_px)
     area, axis = (" ".join(f"{u:g},{v:g}" for u, v in points) for points in (drawing.area.vertices_px, stroke))
     return area, axis
 
