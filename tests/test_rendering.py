@@ -79,4 +79,12 @@ def test_supersampling_changes_colours_at_edges_and_nothing_else() -> None:
     np.testing.assert_array_equal(fine.depth_m, scene.view.depth_m)
     assert np.abs(fine.image.astype(int) - scene.view.image).mean() < 12
     with pytest.raises(ValueError, match="supersampling"):
-        render(scene.world, SMALL, scene.view.T_base_camera, supersampling=0)
+        render(scene.world, SMALL, scene.view.T_base_camera, supersampling=-1)
+
+
+def test_without_samples_the_picture_is_black_and_the_depth_the_same() -> None:
+    scene = simulate("cone", 0, camera=SMALL, noise=None, supersampling=1)
+    blank = render(scene.world, SMALL, scene.view.T_base_camera, supersampling=0)
+    assert not blank.image.any()
+    np.testing.assert_array_equal(blank.depth_m, scene.view.depth_m)
+    np.testing.assert_array_equal(blank.body, scene.view.body)

@@ -96,14 +96,16 @@ class _Rays:
 def render(world: World, camera: PinholeCamera, T_base_camera: Floats, supersampling: int = 1) -> RenderedView:
     """The world as one camera sees it.
 
-    `T_base_camera` is (4, 4) rigid. With supersampling n a colour is the mean of a grid of n x n rays;
-    depth and body are always those of the ray through its centre.
+    `T_base_camera` is (4, 4) rigid. With supersampling n a colour is the mean of a grid of n x n rays, and with 0
+    the picture stays black; depth and body are always those of the ray through a pixel's centre.
     """
-    if supersampling < 1:
-        raise ValueError("supersampling must be 1 or more")
+    if supersampling < 0:
+        raise ValueError("supersampling must not be negative")
     centre = _rays(camera, T_base_camera, 0.0, 0.0)
     depth, seen = _first_bodies(world, centre)
-    if supersampling == 1:
+    if supersampling == 0:
+        light = np.zeros((len(depth), 3))
+    elif supersampling == 1:
         light = _light(world, centre, depth, seen)
     else:
         offsets = (np.arange(supersampling) + 0.5) / supersampling - 0.5
