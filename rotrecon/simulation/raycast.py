@@ -1,4 +1,4 @@
-"""Where a ray first meets a solid of revolution or a plane, in the body's own coordinates."""
+"""Where a ray first meets a solid of revolution, a solid with flat faces or a plane, in the body's own coordinates."""
 
 from dataclasses import dataclass
 
@@ -16,7 +16,35 @@ class Plane:
     """The plane z = 0 of its body, without end."""
 
 
-Shape = Frustum | Sphere | Plane
+@dataclass(frozen=True)
+class Box:
+    """A cuboid about the origin."""
+
+    half_lengths_m: tuple[float, float, float]
+    """Along x, y and z."""
+
+
+@dataclass(frozen=True)
+class Prism:
+    """A regular prism about the z axis, one of its sides facing x; with a half angle, the frustum of a pyramid."""
+
+    sides: int
+    inradius_m: float
+    """From the axis to the middle of a side, halfway along."""
+    length_m: float
+    half_angle_rad: float = 0.0
+    """Positive where it widens along z."""
+
+
+@dataclass(frozen=True)
+class Stretched:
+    """Another shape, scaled along the body's axes: an elliptic cylinder, a roof, an egg."""
+
+    shape: Frustum | Sphere | Prism
+    scale: tuple[float, float, float]
+
+
+Shape = Frustum | Sphere | Plane | Box | Prism | Stretched
 """In body coordinates: a solid's middle is the origin and its axis is z."""
 
 
@@ -30,6 +58,11 @@ def first_hit(shape: Shape, origins_m: Floats, directions: Floats) -> Floats:
             return _positive(-origins_m[..., 2] / directions[..., 2])
         if isinstance(shape, Sphere):
             return _sphere_hit(shape, origins_m, directions)
+        if isinstance(shape, Box | Prism):
+            return _convex_hit(shape, origins_m, directions)
+        if isinstance(shape, Stretched):
+            # the parameter along a ray is the same before and after a linear map
+            return first_hit(shape.shape, origins_m / shape.scale, directions / shape.scale)
         return np.minimum(_lateral_hit(shape, origins_m, directions), _cap_hit(shape, origins_m, directions))
 
 
@@ -39,6 +72,12 @@ def outward_normals(shape: Shape, points_m: Floats) -> Floats:
         return np.broadcast_to(np.array([0.0, 0.0, 1.0]), points_m.shape)
     if isinstance(shape, Sphere):
         return points_m / shape.radius_m
+    if isinstance(shape, Box | Prism):
+        faces, offset_m = _faces(shape)
+        return faces[(points_m @ faces.T - offset_m).argmax(axis=-1)]
+    if isinstance(shape, Stretched):
+        normals = outward_normals(shape.shape, points_m / shape.scale) / shape.scale
+        return normals / np.linalg.norm(normals, axis=-1, keepdims=True)
     z = points_m[..., 2]
     on_cap = np.abs(np.abs(z) - shape.length_m / 2) < ON_CAP_M
     across = np.hypot(points_m[..., 0], points_m[..., 1])
@@ -83,6 +122,31 @@ def _cap_hit(solid: Frustum, origins_m: Floats, directions: Floats) -> Floats:
         y = origins_m[..., 1] + root * directions[..., 1]
         hit = np.minimum(hit, _positive(root, x**2 + y**2 <= solid.radius_at(end_m) ** 2))
     return np.asarray(hit)
+
+
+def _convex_hit(shape: Box | Prism, origins_m: Floats, directions: Floats) -> Floats:
+    """The last of the faces that a ray goes in through, unless it has gone out through another before."""
+    normals, offset_m = _faces(shape)
+    depth = offset_m - origins_m @ normals.T
+    speed = directions @ normals.T
+    root = depth / speed
+    enter = np.where(speed < 0, root, -np.inf).max(axis=-1)
+    leave = np.where(speed > 0, root, np.inf).min(axis=-1)
+    met = (enter <= leave) & ~((speed == 0) & (depth < 0)).any(axis=-1)
+    return np.minimum(_positive(enter, met), _positive(leave, met))
+
+
+def _faces(shape: Box | Prism) -> tuple[Floats, Floats]:
+    """Unit normals (F, 3) and distances (F,) from the origin of the planes that bound a convex shape."""
+    if isinstance(shape, Box):
+        return np.concatenate([np.eye(3), -np.eye(3)]), np.tile(shape.half_lengths_m, 2)
+    angle = 2 * np.pi * np.arange(shape.sides) / shape.sides
+    lean = shape.half_angle_rad
+    across, sines = np.cos(lean) * np.stack([np.cos(angle), np.sin(angle)], axis=1), np.full(shape.sides, -np.sin(lean))
+    sides = np.concatenate([across, sines[:, None]], axis=1)
+    ends = np.array([[0.0, 0.0, 1.0], [0.0, 0.0, -1.0]])
+    offset_m = np.concatenate([np.full(shape.sides, shape.inradius_m * np.cos(lean)), np.full(2, shape.length_m / 2)])
+    return np.concatenate([sides, ends]), offset_m
 
 
 def _roots(a: Floats, half_b: Floats, c: Floats) -> tuple[Floats, Floats]:
