@@ -25,7 +25,7 @@ from rotrecon.scene.reading import read_scene
 from rotrecon.settings import Method, Settings
 from rotrecon.simulation.simulate import simulate as simulate_object
 from rotrecon.simulation.truth import TRUTH_FILE, write_simulated
-from rotrecon.tools import ToolTableError, default_tools, read_tools
+from rotrecon.tool_table import ToolTableError, default_tools, read_tools
 
 cli = typer.Typer(
     add_completion=False,

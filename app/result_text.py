@@ -10,7 +10,8 @@ from app.session import Session, sentence
 from rotrecon.answer import answer
 from rotrecon.outcome import Fit
 from rotrecon.reconstruct import Reconstruction
-from rotrecon.tools import Tool, ToolProposal
+from rotrecon.tool_table import Tool
+from rotrecon.tools import ToolProposal
 
 REASONS = {
     "empty": "no pixel segmented",

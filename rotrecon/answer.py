@@ -6,10 +6,19 @@ import numpy as np
 
 from rotrecon.arrays import Floats
 from rotrecon.circles import SectionState
-from rotrecon.outcome import Fit, FitFailure
+from rotrecon.outcome import Fit, FitFailure, Intervals
 from rotrecon.primitives import Frustum, Primitive
 from rotrecon.reconstruct import Reconstruction
 from rotrecon.tools import NoTool, ToolProposal
+
+NOTHING: dict[str, Any] = dict.fromkeys(
+    [
+        "margin", "diameter_mm", "interval_mm", "length_mm", "length_interval_mm", "ends", "center_m",
+        "center_interval_mm", "axis", "axis_interval_deg", "half_angle_deg", "half_angle_interval_deg", "rms_mm",
+        "arc_deg", "inlier_share", "sigma_over_radius", "noise", "tool", "contact",
+    ]
+)  # fmt: skip
+"""The fields that are null where they are not known."""
 
 
 def answer(result: Reconstruction) -> dict[str, Any]:
@@ -19,16 +28,16 @@ def answer(result: Reconstruction) -> dict[str, Any]:
         return cannot(advice, result.settings.method) | {"sections": _sections(result)}
     fit, solid = result.fit, result.solid
     return {
+        **NOTHING,
         "kind": solid.kind,
         "certain": False,
-        "margin": None,
         "concave": fit.concave,
         "diameter_mm": _mm(2 * float(solid.radius_at(0.0))),
-        "interval_mm": None,
         "length_mm": _mm(solid.ends[1] - solid.ends[0]) if isinstance(solid, Frustum) else None,
         "center_m": _plain(solid.center_m),
         "axis": _axis(solid),
-        "half_angle_deg": round(float(np.degrees(solid.half_angle_rad)), 3) if solid.kind == "cone" else None,
+        "half_angle_deg": _degrees(solid.half_angle_rad) if solid.kind == "cone" else None,
+        **_intervals(fit.intervals),
         "profile": _profile(result, fit),
         "rms_mm": _mm(fit.rms_m),
         "arc_deg": round(float(np.degrees(fit.arc_rad)), 1),
@@ -44,23 +53,31 @@ def answer(result: Reconstruction) -> dict[str, Any]:
 
 def cannot(reason: str, method: str) -> dict[str, Any]:
     """The same object where nothing was measured."""
-    nothing = dict.fromkeys(
-        ["margin", "diameter_mm", "interval_mm", "length_mm", "center_m", "axis", "half_angle_deg", "rms_mm"]
-    )
     return {
+        **NOTHING,
         "kind": None,
         "certain": False,
         "concave": False,
-        **nothing,
         "profile": [],
-        "arc_deg": None,
         "sections": {"used": 0, "dropped": {}},
-        "tool": None,
-        "contact": None,
         "reasons": [reason],
         "candidates": [],
         "frame": "base",
         "method": method,
+    }
+
+
+def _intervals(intervals: Intervals | None) -> dict[str, Any]:
+    """95 % intervals: [low, high] of sizes, one radius about the middle and about the axis."""
+    if intervals is None:
+        return {}
+    direction, angle, length = intervals.direction_rad, intervals.half_angle_rad, intervals.length_m
+    return {
+        "interval_mm": [_mm(value) for value in intervals.diameter_m],
+        "length_interval_mm": None if length is None else [_mm(value) for value in length],
+        "center_interval_mm": _mm(intervals.center_m),
+        "axis_interval_deg": None if direction is None else _degrees(direction),
+        "half_angle_interval_deg": None if angle is None else [_degrees(value) for value in angle],
     }
 
 
@@ -91,7 +108,10 @@ def _candidates(result: Reconstruction) -> list[dict[str, Any]]:
         {
             "kind": "rod" if is_rod and candidate.kind == "cylinder" else candidate.kind,
             "diameter_mm": _mm(2 * candidate.radius_m),
+            "interval_mm": None,
+            "half_angle_deg": _degrees(candidate.half_angle_rad) if candidate.kind == "cone" else None,
             "score": round(candidate.score, 4),
+            "possible": None,
         }
         for candidate in result.candidates
     ]
@@ -112,6 +132,11 @@ def _contact(tool: ToolProposal | NoTool) -> dict[str, Any] | None:
 def _mm(metres: float) -> float:
     """Millimetres to the micrometre."""
     return round(float(metres) * 1000, 3)
+
+
+def _degrees(radians: float) -> float:
+    """Degrees to a thousandth."""
+    return round(float(np.degrees(radians)), 3)
 
 
 def _plain(vector: Floats) -> list[float]:

@@ -16,7 +16,7 @@ from rotrecon.radii import SHAPES, Shape, choose, fit_radii, rank
 from rotrecon.section_fit import as_candidates, fit_solid, why_no_axis
 from rotrecon.segmentation import Segmentation, segment
 from rotrecon.settings import Settings
-from rotrecon.tools import NoTool, ToolProposal, propose_tool
+from rotrecon.tools import NoTool, Reading, ToolProposal, propose_tool
 from rotrecon.workspace import available
 
 
@@ -164,7 +164,9 @@ def _with_solid(
 
 def _tool(fit: Fit, solid: Primitive, camera_center_m: Floats, settings: Settings) -> ToolProposal | NoTool:
     """The tool for a solid in base coordinates; none for a size that is doubtful."""
-    return NoTool(fit.doubts) if fit.doubts else propose_tool(solid, camera_center_m, fit.concave, settings.tools)
+    if fit.doubts:
+        return NoTool(fit.doubts)
+    return propose_tool((Reading(solid),), camera_center_m, fit.concave, settings.tools)
 
 
 def _radius_from(cut: Cut, shape: Shape, settings: Settings) -> float | None:

@@ -3,7 +3,7 @@
 from dataclasses import dataclass, field
 from typing import Literal
 
-from rotrecon.tools import ToolTable, default_tools
+from rotrecon.tool_table import ToolTable, default_tools
 
 Method = Literal["paper"]
 

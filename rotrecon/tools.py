@@ -1,45 +1,43 @@
-"""Which tool fits which object: paper table 1 as a table that can be edited."""
+"""Which tool fits an object, for all that it may be (paper table 1)."""
 
-import tomllib
+from collections.abc import Sequence
 from dataclasses import dataclass
-from functools import cache
-from itertools import combinations
-from math import isfinite
-from pathlib import Path
-from typing import Annotated, get_args
+from math import degrees, inf
 
-import msgspec
 import numpy as np
 
 from rotrecon.arrays import Floats, freeze
-from rotrecon.primitives import Kind, Primitive
+from rotrecon.outcome import Range
+from rotrecon.primitives import Frustum, Primitive
+from rotrecon.tool_table import Tool, ToolTable
 
-Positive = Annotated[float, msgspec.Meta(gt=0)]
-
-REMEDY = (
-    f"a tool has name, takes (of {', '.join(get_args(Kind))}), diameter_mm = [lowest, highest], and may have "
-    "min_length_over_diameter, opening_mm, depth_mm, reach_m and dangerous_ok"
-)
-
-
-class ToolTableError(Exception):
-    """A tool table that cannot be used; the message names the file, the tool, the field and the remedy."""
+STRAIGHT_RAD: Range = (-0.05, 0.05)
+"""Half angles that a tool for a cylinder or a rod takes for straight: 3 degrees is the angle of friction of greased
+steel (0.05), below which jaws do not slip along a taper."""
+WHICH_KIND = "look at it from elsewhere, or choose its kind if you know it"
+"""What settles which of the readings is the true one."""
 
 
-class Tool(msgspec.Struct, frozen=True, kw_only=True, forbid_unknown_fields=True):
-    """One tool and the objects it may be put to; lengths as a person reads them."""
+@dataclass(frozen=True, eq=False)
+class Reading:
+    """One thing that the object may be, and between which limits; base coordinates.
 
-    name: str
-    takes: tuple[Kind, ...]
-    diameter_mm: tuple[Positive, Positive]
-    min_length_over_diameter: Annotated[float, msgspec.Meta(ge=0)] = 0.0
-    opening_mm: Positive | None = None
-    depth_mm: Positive | None = None
-    reach_m: Positive | None = None
-    dangerous_ok: bool = False
+    An interval is (lowest, highest); where it is None, no interval is known and the solid's own number counts. A rod
+    and a cylinder are one solid under two names: give it once, under the name it goes by.
+    """
 
+    solid: Primitive
+    diameter_m: Range | None = None
+    """At the middle of its length."""
+    length_m: Range | None = None
+    """Where an end is open, the highest is inf."""
+    half_angle_rad: Range | None = None
+    """Of a cone."""
 
-ToolTable = tuple[Tool, ...]
+    def __post_init__(self) -> None:
+        for interval in (self.diameter_m, self.length_m, self.half_angle_rad):
+            if interval is not None and not interval[0] <= interval[1]:
+                raise ValueError(f"{interval} is not an interval: give (lowest, highest)")
 
 
 @dataclass(frozen=True, eq=False)
@@ -51,6 +49,8 @@ class ToolProposal:
     """(3,) on the surface, at the middle of the object, where it faces the camera."""
     approach: Floats
     """(3,) unit: the way the tool moves to get there, at right angles to the object's axis."""
+    passed_over: tuple[str, ...] = ()
+    """Tools before it in the table that may fit too: a sentence a tool."""
 
     def __post_init__(self) -> None:
         freeze(self)
@@ -61,20 +61,48 @@ class NoTool:
     """No tool can be named, and why: a sentence a tool."""
 
     reasons: tuple[str, ...]
+    undecided: bool = False
+    """A tool may fit, but the measurement does not decide it."""
 
 
-def propose_tool(solid: Primitive, camera_center_m: Floats, concave: bool, tools: ToolTable) -> ToolProposal | NoTool:
-    """The first tool of the table that fits a solid seen by a camera at `camera_center_m`, both in base coordinates."""
+@dataclass(frozen=True)
+class _Objection:
+    """What speaks against a tool."""
+
+    why: str
+    settled_by: str = ""
+    """What the operator can do about it."""
+    certain: bool = True
+    """It holds over the whole interval, not for a part of it only."""
+
+
+def propose_tool(
+    readings: tuple[Reading, ...], camera_center_m: Floats, concave: bool, tools: ToolTable
+) -> ToolProposal | NoTool:
+    """The first tool of the table that fits whatever the object may be, seen by a camera at `camera_center_m` (3,).
+
+    The first reading is the chosen one: contact and approach are its. A tool fits when it fits every reading over its
+    whole intervals; it is ruled out when it fits none anywhere; in between it is not sure. A tool that fits is proposed
+    even where one before it in the table is not sure: it is right whichever way that doubt is settled, and the order of
+    the table is a preference among tools that fit. Where no tool fits, NoTool. Raises ValueError without a reading.
+    """
+    if not readings:
+        raise ValueError("there is no reading to choose a tool for")
     if concave:
         return NoTool(("the surface is seen from inside, and no tool works there; draw an object seen from outside",))
-    contact_m, approach = _contact(solid, camera_center_m)
-    objections: list[str] = []
+    contact_m, approach = _contact(readings[0].solid, camera_center_m)
+    reasons: list[str] = []
+    unsure: list[str] = []
     for tool in tools:
-        objection = _objection(tool, solid, contact_m)
-        if objection is None:
-            return ToolProposal(tool, contact_m, approach)
-        objections.append(f"{tool.name}: {objection}")
-    return NoTool(tuple(objections))
+        objections = [_objections(tool, reading, contact_m) for reading in readings]
+        if not any(objections):
+            return ToolProposal(tool, contact_m, approach, tuple(unsure))
+        excluded = [any(objection.certain for objection in against) for against in objections]
+        reasons.append(
+            f"{tool.name}: {_ruled_out(objections[0]) if all(excluded) else _not_sure(objections, excluded)}"
+        )
+        unsure += [] if all(excluded) else reasons[-1:]
+    return NoTool(tuple(reasons), undecided=bool(unsure))
 
 
 def _contact(solid: Primitive, camera_center_m: Floats) -> tuple[Floats, Floats]:
@@ -86,67 +114,100 @@ def _contact(solid: Primitive, camera_center_m: Floats) -> tuple[Floats, Floats]
     return solid.center_m - float(solid.radius_at(0.0)) * approach, approach
 
 
-def _objection(tool: Tool, solid: Primitive, contact_m: Floats) -> str | None:
-    """Why a tool does not fit, or None."""
-    diameter_mm = 2000 * float(solid.radius_at(0.0))
-    length_mm = 1000 * (solid.ends[1] - solid.ends[0])
+def _ruled_out(against: Sequence[_Objection]) -> str:
+    """Why a tool is ruled out: what is certain of what speaks against it."""
+    certain = [objection for objection in against if objection.certain]
+    return _verdict("ruled out", certain, [objection.settled_by for objection in certain])
+
+
+def _not_sure(objections: Sequence[Sequence[_Objection]], excluded: Sequence[bool]) -> str:
+    """Why a tool may fit or not: all that speaks against it, for each reading; `excluded` are those it cannot take."""
+    every = [objection for against in objections for objection in against]
+    settled_by = [objection.settled_by for objection in every]
+    return _verdict("not sure", every, [*settled_by, WHICH_KIND] if any(excluded) else settled_by)
+
+
+def _verdict(verdict: str, objections: Sequence[_Objection], settled_by: Sequence[str]) -> str:
+    """Reasons, the verdict and what to do about it, each once."""
+    whys = dict.fromkeys(objection.why for objection in objections)
+    return "; ".join([f"{' and '.join(whys)}: {verdict}", *dict.fromkeys(filter(None, settled_by))])
+
+
+def _objections(tool: Tool, reading: Reading, contact_m: Floats) -> list[_Objection]:
+    """What speaks against a tool for one reading; nothing when it fits."""
+    checks = (_kind(tool, reading), _diameter(tool, reading), _length(tool, reading), _reach(tool, contact_m))
+    return [objection for objection in checks if objection is not None]
+
+
+def _kind(tool: Tool, reading: Reading) -> _Objection | None:
+    """A cone that hardly tapers is as good as straight to a tool for what is straight."""
+    solid = reading.solid
+    if solid.kind in tool.takes:
+        return None
+    half_angle_rad = solid.half_angle_rad if isinstance(solid, Frustum) else 0.0
+    taper_rad = reading.half_angle_rad or (half_angle_rad, half_angle_rad)
+    if solid.kind != "cone" or not {"cylinder", "rod"} & set(tool.takes) or not _overlap(taper_rad, STRAIGHT_RAD):
+        taper = f" of {degrees(abs(half_angle_rad)):.1f} degrees" if solid.kind == "cone" else ""
+        return _Objection(f"does not take a {solid.kind}{taper}")
+    if _within(taper_rad, STRAIGHT_RAD):
+        return None
+    has = _range((degrees(taper_rad[0]), degrees(taper_rad[1])))
+    why = f"takes a half angle up to {degrees(STRAIGHT_RAD[1]):.1f} degrees, the cone has {has} degrees"
+    return _Objection(why, "draw more of its length", certain=False)
+
+
+def _diameter(tool: Tool, reading: Reading) -> _Objection | None:
     low, high = tool.diameter_mm
-    if solid.kind not in tool.takes:
-        return f"does not take a {solid.kind}"
-    if not low <= diameter_mm <= high:
-        return f"takes {low:g} to {high:g} mm, the object has {diameter_mm:.1f} mm"
-    if length_mm < tool.min_length_over_diameter * diameter_mm:
-        return (
-            f"needs an object {tool.min_length_over_diameter:g} times as long as thick, "
-            f"this one is {length_mm / diameter_mm:.1f} times; draw more of its length if there is more"
-        )
+    diameter_mm = _diameter_mm(reading)
+    if _within(diameter_mm, tool.diameter_mm):
+        return None
+    why = f"takes {low:g} to {high:g} mm, the {reading.solid.kind} has {_range(diameter_mm)} mm"
+    if not _overlap(diameter_mm, tool.diameter_mm):
+        return _Objection(why)
+    return _Objection(why, "look at it from nearer, or from the side", certain=False)
+
+
+def _length(tool: Tool, reading: Reading) -> _Objection | None:
+    least = tool.min_length_over_diameter
+    ratio = _length_over_diameter(reading)
+    if ratio[0] >= least:
+        return None
+    has = f"at least {ratio[0]:.1f}" if ratio[1] == inf else _range(ratio)
+    why = f"needs an object {least:g} times as long as thick, the {reading.solid.kind} is {has} times"
+    return _Objection(why, "draw more of its length if there is more", certain=ratio[1] < least)
+
+
+def _reach(tool: Tool, contact_m: Floats) -> _Objection | None:
     distance_m = float(np.linalg.norm(contact_m))
-    if tool.reach_m is not None and distance_m > tool.reach_m:
-        return f"reaches {tool.reach_m:g} m, the object is {distance_m:.2f} m away"
-    return None
+    if tool.reach_m is None or distance_m <= tool.reach_m:
+        return None
+    return _Objection(f"reaches {tool.reach_m:g} m, the object is {distance_m:.2f} m away")
 
 
-@cache
-def default_tools() -> ToolTable:
-    """The table that ships with the program: the three tools of paper table 1."""
-    return read_tools(Path(__file__).with_name("tools.toml"))
+def _diameter_mm(reading: Reading) -> Range:
+    low, high = reading.diameter_m or (2 * float(reading.solid.radius_at(0.0)),) * 2
+    return 1000 * low, 1000 * high
 
 
-def read_tools(path: Path) -> ToolTable:
-    """A tool table from a TOML file; raises ToolTableError naming file, tool, field and remedy."""
-    try:
-        entries = tomllib.loads(path.read_text(encoding="utf-8"))
-    except OSError as error:
-        raise ToolTableError(f"{path}: cannot be read ({error.strerror}); give the path of a tool table") from error
-    except (tomllib.TOMLDecodeError, UnicodeDecodeError, RecursionError) as error:
-        raise ToolTableError(f"{path}: is not TOML ({error}); correct it there") from error
-    if not entries:
-        raise ToolTableError(f"{path}: holds no tool; add a table such as [cutter]")
-    tools = tuple(_tool(path, key, entry) for key, entry in entries.items())
-    for first, second in combinations(tools, 2):
-        if first.name == second.name:
-            raise ToolTableError(f"{path}: two tools have the name '{first.name}'; give each a name of its own")
-    return tools
+def _length_over_diameter(reading: Reading) -> Range:
+    """Between which limits it is, whatever diameter goes with which length; 1 for a sphere."""
+    low, high = reading.solid.ends
+    if reading.solid.kind == "sphere":
+        return 1.0, 1.0
+    thin_mm, thick_mm = _diameter_mm(reading)
+    short_m, long_m = reading.length_m or (high - low,) * 2
+    return 1000 * short_m / thick_mm if thick_mm > 0 else inf, 1000 * long_m / thin_mm if thin_mm > 0 else inf
 
 
-def _tool(path: Path, key: str, entry: object) -> Tool:
-    """One checked entry of the table."""
-    try:
-        tool = msgspec.convert(entry, Tool)
-    except msgspec.ValidationError as error:
-        raise ToolTableError(f"{path}: [{key}]: {error}; {REMEDY}") from error
-    low, high = tool.diameter_mm
-    if not tool.name.strip():
-        raise ToolTableError(f"{path}: [{key}] has no name; give the tool the name an operator knows it by")
-    if len(set(tool.takes)) != len(tool.takes) or not tool.takes:
-        raise ToolTableError(f"{path}: [{key}] takes {list(tool.takes)}; name at least one kind of object, each once")
-    if not all(isfinite(value) for value in msgspec.structs.asdict(tool).values() if isinstance(value, float)):
-        raise ToolTableError(f"{path}: [{key}] holds a number that is not finite; leave a limit out that there is not")
-    if not (low <= high and isfinite(high)):
-        raise ToolTableError(f"{path}: [{key}] diameter_mm [{low:g}, {high:g}] is not a range; give [lowest, highest]")
-    if tool.opening_mm is not None and tool.opening_mm < high:
-        raise ToolTableError(
-            f"{path}: [{key}] opening_mm {tool.opening_mm:g} is less than the {high:g} mm that diameter_mm allows; "
-            "widen the opening or lower the diameter"
-        )
-    return tool
+def _within(interval: Range, limits: Range) -> bool:
+    return limits[0] <= interval[0] and interval[1] <= limits[1]
+
+
+def _overlap(interval: Range, limits: Range) -> bool:
+    return interval[0] <= limits[1] and limits[0] <= interval[1]
+
+
+def _range(interval: Range) -> str:
+    """An interval in words; one number where it is no wider than what is shown of it."""
+    low, high = (f"{value:.1f}" for value in interval)
+    return low if low == high else f"{low} to {high}"

@@ -1,4 +1,5 @@
 import json
+from dataclasses import replace
 
 import numpy as np
 import pytest
@@ -6,15 +7,21 @@ import pytest
 from rotrecon.answer import answer, cannot
 from rotrecon.drawing import AreaOfInterest, Drawing, ObjectAxis
 from rotrecon.frame import Frame
+from rotrecon.outcome import Fit, Intervals
 from rotrecon.primitives import Sphere
 from rotrecon.reconstruct import reconstruct
 from rotrecon.settings import Settings
 from tests.exact import CAMERA, cone, cylinder, drawing_along, exact_frame
 
+UNKNOWN_TO_PAPER = [
+    "margin", "interval_mm", "length_interval_mm", "ends", "center_interval_mm", "axis_interval_deg",
+    "half_angle_interval_deg", "inlier_share", "sigma_over_radius", "noise",
+]  # fmt: skip
 FIELDS = [
-    "kind", "certain", "margin", "concave", "diameter_mm", "interval_mm", "length_mm", "center_m", "axis",
-    "half_angle_deg", "profile", "rms_mm", "arc_deg", "sections", "tool", "contact", "reasons", "candidates",
-    "frame", "method",
+    "kind", "certain", "margin", "concave", "diameter_mm", "interval_mm", "length_mm", "length_interval_mm", "ends",
+    "center_m", "center_interval_mm", "axis", "axis_interval_deg", "half_angle_deg", "half_angle_interval_deg",
+    "profile", "rms_mm", "arc_deg", "inlier_share", "sigma_over_radius", "noise", "sections", "tool", "contact",
+    "reasons", "candidates", "frame", "method",
 ]  # fmt: skip
 
 
@@ -48,7 +55,23 @@ def test_cylinder_in_numbers():
 
 def test_paper_method_claims_no_certainty():
     content = answer_for(cylinder(np.array([0, 0, 0.8]), np.array([0, 1.0, 0.3]), 0.08))
-    assert (content["certain"], content["margin"], content["interval_mm"]) == (False, None, None)
+    assert content["certain"] is False
+    assert [name for name in UNKNOWN_TO_PAPER if content[name] is not None] == []
+    assert all(candidate["interval_mm"] is None for candidate in content["candidates"])
+
+
+def test_intervals_in_millimetres_and_degrees():
+    body = cone(np.array([0, 0, 0.7]), np.array([0, 1.0, 0]), 0.1, 12, 0.2)
+    result = reconstruct(exact_frame(body), drawing_along(body, 0.7), Settings())
+    assert isinstance(result.fit, Fit)
+    intervals = Intervals((0.09, 0.11), 0.002, np.radians(1.0), (np.radians(11.0), np.radians(13.0)), (0.19, 0.21))
+    content = answer(replace(result, fit=replace(result.fit, intervals=intervals)))
+    assert content["interval_mm"] == [90, 110]
+    assert content["length_interval_mm"] == [190, 210]
+    assert content["center_interval_mm"] == 2
+    assert content["axis_interval_deg"] == 1
+    assert content["half_angle_interval_deg"] == [11, 13]
+    assert sorted(content) == sorted(FIELDS)
 
 
 def test_sphere_has_no_axis_and_a_cone_has_an_angle():

@@ -8,8 +8,8 @@ import pytest
 ROOT = Path(__file__).parents[1]
 FORBIDDEN = {"app", "viser", "fastapi", "starlette", "uvicorn", "typer"}
 ORDER = [
-    "arrays", "camera", "primitives", "workspace", "tools", "settings", "frame", "drawing",
-    "segmentation", "circles", "axis", "radii", "outcome", "section_fit", "reconstruct", "overlay",
+    "arrays", "camera", "primitives", "workspace", "tool_table", "settings", "frame", "drawing",
+    "segmentation", "circles", "axis", "radii", "outcome", "section_fit", "tools", "reconstruct", "overlay",
 ]  # fmt: skip
 """The flow of data; a stage may import only what stands before it."""
 STAGES = {"workspace", "drawing", "segmentation", "circles", "radii"}

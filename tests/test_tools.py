@@ -1,14 +1,18 @@
+from dataclasses import replace
+from typing import Literal
+
 import numpy as np
 import pytest
 
 from rotrecon.primitives import Frustum, Sphere
-from rotrecon.tools import NoTool, ToolProposal, ToolTableError, default_tools, propose_tool, read_tools
+from rotrecon.tool_table import ToolTableError, default_tools, read_tools
+from rotrecon.tools import NoTool, Reading, ToolProposal, propose_tool
 
 CAMERA_M = np.zeros(3)
 CUTTER = '[cutter]\nname = "cutter"\ntakes = ["cylinder"]\ndiameter_mm = [20, 100]\n'
 
 
-def pipe(diameter_m=0.06, length_m=0.3, kind="cylinder"):
+def pipe(diameter_m=0.06, length_m=0.3, kind: Literal["cylinder", "rod", "cone"] = "cylinder"):
     return Frustum(kind, np.array([0, 0, 0.8]), np.array([0, 1.0, 0]), length_m, diameter_m / 2)
 
 
@@ -17,17 +21,17 @@ def test_default_table_is_table_1_of_the_paper():
     cases = [
         (pipe(), "mechanical cutter"),
         (pipe(0.02, kind="rod"), "clipper"),
-        (pipe(kind="cone"), "grip"),
+        (replace(pipe(kind="cone"), half_angle_rad=0.2), "grip"),
         (ball, "grip"),
     ]
     for solid, name in cases:
-        proposal = propose_tool(solid, CAMERA_M, False, default_tools())
+        proposal = propose_tool((Reading(solid),), CAMERA_M, False, default_tools())
         assert isinstance(proposal, ToolProposal)
         assert proposal.tool.name == name
 
 
 def test_no_tool_says_why_each_is_ruled_out():
-    answer = propose_tool(pipe(diameter_m=0.4), CAMERA_M, False, default_tools())
+    answer = propose_tool((Reading(pipe(diameter_m=0.4)),), CAMERA_M, False, default_tools())
     assert isinstance(answer, NoTool)
     assert len(answer.reasons) == len(default_tools())
     assert "400.0 mm" in answer.reasons[0]
@@ -36,8 +40,8 @@ def test_no_tool_says_why_each_is_ruled_out():
 def test_too_short_for_its_thickness_and_out_of_reach(tmp_path):
     file = tmp_path / "tools.toml"
     file.write_text(CUTTER + "min_length_over_diameter = 3\nreach_m = 0.5\n")
-    short = propose_tool(pipe(length_m=0.1), CAMERA_M, False, read_tools(file))
-    far = propose_tool(pipe(), CAMERA_M, False, read_tools(file))
+    short = propose_tool((Reading(pipe(length_m=0.1)),), CAMERA_M, False, read_tools(file))
+    far = propose_tool((Reading(pipe()),), CAMERA_M, False, read_tools(file))
     assert isinstance(short, NoTool)
     assert "3 times as long as thick" in short.reasons[0]
     assert isinstance(far, NoTool)
@@ -45,12 +49,12 @@ def test_too_short_for_its_thickness_and_out_of_reach(tmp_path):
 
 
 def test_inside_of_a_pipe_gets_no_tool():
-    assert isinstance(propose_tool(pipe(), CAMERA_M, True, default_tools()), NoTool)
+    assert isinstance(propose_tool((Reading(pipe()),), CAMERA_M, True, default_tools()), NoTool)
 
 
 def test_camera_on_the_axis_still_gets_an_approach():
     solid = Frustum("cylinder", np.array([0, 0, 0.8]), np.array([0, 0, 1.0]), 0.3, 0.03)
-    proposal = propose_tool(solid, CAMERA_M, False, default_tools())
+    proposal = propose_tool((Reading(solid),), CAMERA_M, False, default_tools())
     assert isinstance(proposal, ToolProposal)
     assert np.linalg.norm(proposal.approach) == pytest.approx(1)
 
