@@ -1,0 +1,81 @@
+"""How far one measurement is from the truth, and how sure it said it was."""
+
+from dataclasses import dataclass
+
+import numpy as np
+
+from app.bench.accuracy.clouds import Cloud
+from rotrecon.answer import answer
+from rotrecon.drawing import Drawing
+from rotrecon.outcome import Fit, Range
+from rotrecon.primitives import Primitive, Sphere
+from rotrecon.reconstruct import Reconstruction, reconstruct
+from rotrecon.settings import Method, Settings
+
+TRUE_KINDS = {"wire": "rod", "leg": "cylinder", "pipe": "cylinder", "ball": "sphere", "cone": "cone"}
+
+
+@dataclass(frozen=True)
+class Outcome:
+    """Errors relative to the true values; NaN where there is no such number."""
+
+    radius: float = np.nan
+    """Of a cone where the measured solid has its middle."""
+    half_angle: float = np.nan
+    """Of a cone; that of any other kind counts as 0."""
+    radius_interval: Range = (np.nan, np.nan)
+    """95 % interval less the truth, so that it covers the truth where it holds 0."""
+    half_angle_interval: Range = (np.nan, np.nan)
+    kind: str | None = None
+    """None where it was refused."""
+    certain: bool = False
+    reason: str = ""
+    """Of a refusal."""
+
+    @property
+    def refused(self) -> bool:
+        """Whether there is no size."""
+        return bool(np.isnan(self.radius))
+
+
+def by_program(cloud: Cloud, method: Method, drawing: Drawing | None = None) -> Outcome:
+    """What `reconstruct` makes of a cloud, as drawn or with another drawing."""
+    return judged(reconstruct(cloud.frame, drawing or cloud.drawing, Settings(method=method)), cloud.truth)
+
+
+def judged(result: Reconstruction, truth: Primitive) -> Outcome:
+    """A reconstruction beside the truth in camera coordinates."""
+    if not isinstance(result.fit, Fit):
+        return Outcome(reason=result.fit.reason)
+    solid, said = result.fit.solid, answer(result)
+    true_radius = true_radius_at(truth, solid.center_m)
+    angle = true_half_angle(truth)
+    intervals = result.fit.intervals
+    along = float(np.sign(solid.direction @ truth.direction))
+    return Outcome(
+        radius=float(solid.radius_at(0.0)) / true_radius - 1,
+        half_angle=along * getattr(solid, "half_angle_rad", 0.0) / angle - 1,
+        radius_interval=_relative(intervals and intervals.diameter_m, 2 * true_radius),
+        half_angle_interval=_relative(intervals and intervals.half_angle_rad, along * angle),
+        kind=said["kind"],
+        certain=said["certain"],
+    )
+
+
+def true_radius_at(truth: Primitive, point_m: np.ndarray) -> float:
+    """The true radius at the height of a point (3,) along the axis."""
+    if isinstance(truth, Sphere):
+        return truth.radius_m
+    return float(truth.radius_at((point_m - truth.center_m) @ truth.direction))
+
+
+def true_half_angle(truth: Primitive) -> float:
+    """NaN but for a cone."""
+    return truth.half_angle_rad if truth.kind == "cone" and not isinstance(truth, Sphere) else np.nan
+
+
+def _relative(interval: Range | None, truth: float) -> Range:
+    if interval is None:
+        return (np.nan, np.nan)
+    low, high = sorted((interval[0] / truth - 1, interval[1] / truth - 1))
+    return low, high
