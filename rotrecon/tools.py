@@ -97,11 +97,9 @@ def propose_tool(
         objections = [_objections(tool, reading, contact_m) for reading in readings]
         if not any(objections):
             return ToolProposal(tool, contact_m, approach, tuple(unsure))
-        excluded = [any(objection.certain for objection in against) for against in objections]
-        reasons.append(
-            f"{tool.name}: {_ruled_out(objections[0]) if all(excluded) else _not_sure(objections, excluded)}"
-        )
-        unsure += [] if all(excluded) else reasons[-1:]
+        verdict, is_out = _verdict(objections)
+        reasons.append(f"{tool.name}: {verdict}")
+        unsure += [] if is_out else reasons[-1:]
     return NoTool(tuple(reasons), undecided=bool(unsure))
 
 
@@ -114,29 +112,23 @@ def _contact(solid: Primitive, camera_center_m: Floats) -> tuple[Floats, Floats]
     return solid.center_m - float(solid.radius_at(0.0)) * approach, approach
 
 
-def _ruled_out(against: Sequence[_Objection]) -> str:
-    """Why a tool is ruled out: what is certain of what speaks against it."""
-    certain = [objection for objection in against if objection.certain]
-    return _verdict("ruled out", certain, [objection.settled_by for objection in certain])
+def _verdict(objections: Sequence[Sequence[_Objection]]) -> tuple[str, bool]:
+    """What speaks against a tool, for each reading, in words and with what settles it; and whether it is ruled out."""
+    excluded = [any(objection.certain for objection in against) for against in objections]
+    is_out = all(excluded)
+    against = objections[0] if is_out else [objection for against in objections for objection in against]
+    whys = dict.fromkeys(objection.why for objection in against)
+    remedies = dict.fromkeys(objection.settled_by for objection in against if objection.settled_by)
+    if any(excluded) and not is_out:
+        remedies[WHICH_KIND] = None
+    return "; ".join([f"{' and '.join(whys)}: {'ruled out' if is_out else 'not sure'}", *remedies]), is_out
 
 
-def _not_sure(objections: Sequence[Sequence[_Objection]], excluded: Sequence[bool]) -> str:
-    """Why a tool may fit or not: all that speaks against it, for each reading; `excluded` are those it cannot take."""
-    every = [objection for against in objections for objection in against]
-    settled_by = [objection.settled_by for objection in every]
-    return _verdict("not sure", every, [*settled_by, WHICH_KIND] if any(excluded) else settled_by)
-
-
-def _verdict(verdict: str, objections: Sequence[_Objection], settled_by: Sequence[str]) -> str:
-    """Reasons, the verdict and what to do about it, each once."""
-    whys = dict.fromkeys(objection.why for objection in objections)
-    return "; ".join([f"{' and '.join(whys)}: {verdict}", *dict.fromkeys(filter(None, settled_by))])
-
-
-def _objections(tool: Tool, reading: Reading, contact_m: Floats) -> list[_Objection]:
-    """What speaks against a tool for one reading; nothing when it fits."""
+def _objections(tool: Tool, reading: Reading, contact_m: Floats) -> Sequence[_Objection]:
+    """What speaks against a tool for one reading: the first that is certain, or else all; nothing when it fits."""
     checks = (_kind(tool, reading), _diameter(tool, reading), _length(tool, reading), _reach(tool, contact_m))
-    return [objection for objection in checks if objection is not None]
+    objections = [objection for objection in checks if objection is not None]
+    return [objection for objection in objections if objection.certain][:1] or objections
 
 
 def _kind(tool: Tool, reading: Reading) -> _Objection | None:
