@@ -87,12 +87,13 @@ class Cloud:
     drawing: Drawing
     truth: Primitive
     """In camera coordinates."""
+    surface: Bools
+    """(H, W) pixels of the object's surface with a depth, as drawn and between the stroke's ends."""
     own: Bools
-    """(H, W) pixels of the object's own surface with a depth that is no outlier, as drawn and between the stroke's
-    ends."""
-    drawn: Bools
-    """(H, W) those pixels with an outlier's depth or a neighbour's too."""
+    """(H, W) those whose depth is no outlier."""
     sigma_px: float
+    seed: int
+    """Of the noise; for whoever draws random samples."""
 
     def __post_init__(self) -> None:
         freeze(self)
@@ -119,15 +120,16 @@ def cloud_of(pose: Pose, cell: Cell, draw: int = 0) -> Cloud:
     if cell.arc_deg is not None:
         depth_m[pose.from_middle_rad > np.radians(cell.arc_deg) / 2] = np.nan
     drawing = perturb(simulated.drawing, hand)
-    drawn = inside(drawing) & np.isfinite(depth_m)
+    surface = inside(drawing) & np.isfinite(depth_m) & pose.lateral
     return Cloud(
         simulated.object_name,
         replace(simulated.frame, points_m=CAMERA.cloud(depth_m), noise=None),
         drawing,
         pose.solid,
-        drawn & pose.lateral & ~outlier,
-        drawn,
+        surface,
+        surface & ~outlier,
         cell.sigma_px,
+        key[-1],
     )
 
 
