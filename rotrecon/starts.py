@@ -1,0 +1,119 @@
+"""Where the robust loop starts: surfaces read off the segmented sections, without any fine measurement."""
+
+from dataclasses import dataclass
+
+import numpy as np
+
+from rotrecon.arrays import Bools, Floats, freeze
+from rotrecon.camera import PinholeCamera
+from rotrecon.drawing import CrossSegments
+from rotrecon.surfaces import Ball, Lateral, turn_of
+
+FEWEST_PIXELS = 3
+"""A section with fewer has no middle and no width worth the name."""
+ROBUST_ROUNDS = 8
+"""Reweightings of a line or a circle: each halves what outliers pull, or better."""
+SMALLEST_M = 1e-4
+"""Radii and spreads below this are rounding."""
+
+
+@dataclass(frozen=True, eq=False)
+class Ridge:
+    """What of the object lies nearest along the middles of its sections; camera coordinates, n sections."""
+
+    points_m: Floats
+    """(n, 3) in the order of the stroke."""
+    width_m: Floats
+    """(n,) from limb to limb, as far as it was segmented."""
+
+    def __post_init__(self) -> None:
+        freeze(self)
+
+
+def ridge(camera: PinholeCamera, depth_m: Floats, segments: CrossSegments, kept: Bools) -> Ridge:
+    """Middles and widths of the sections of the kept (S, W) pixels of known depth (S, W)."""
+    rows = np.flatnonzero(kept.sum(axis=1) >= FEWEST_PIXELS)
+    middle, width, depth = np.empty(len(rows)), np.empty(len(rows)), np.empty(len(rows))
+    for number, row in enumerate(rows):
+        columns = np.flatnonzero(kept[row])
+        low, middle[number], high = np.percentile(columns, [2, 50, 98])
+        width[number] = (high - low) / 0.96 + 1
+        off = np.abs(columns - middle[number])
+        near = columns[off <= max(0.1 * width[number], off.min())]
+        depth[number] = np.median(depth_m[row, near])
+    across = segments.first_offset_px + middle
+    pixel = segments.origin_px + rows[:, None] * segments.along + across[:, None] * segments.across
+    return Ridge(camera.unproject(pixel, depth), width * depth / camera.focal_px)
+
+
+def lateral_starts(edge: Ridge, points_m: Floats, direction: Floats | None, focal_px: float) -> list[Lateral]:
+    """Cylinders from a ridge and the object's points (N, 3): by its width, and by the circle its sections lie on.
+
+    `direction` (3,) is the axis' if it is known; else it is the ridge's own.
+    """
+    middle, along = robust_line(edge.points_m)
+    if direction is not None:
+        along = direction if direction @ along >= 0 else -direction
+    radius = max(float(np.median(edge.width_m)) / 2, SMALLEST_M)
+    turn = turn_of(along, -middle)
+    by_width = Lateral(middle - radius * turn[1], turn, radius, 0.0, focal_px, tapers=False)
+    starts = [by_width]
+    offset = (points_m - middle) @ turn[:2].T
+    circle = robust_circle(offset)
+    if circle is not None:
+        (across, toward), circle_radius = circle
+        side = 1 if toward > 0 else -1
+        center = middle + across * turn[0] + toward * turn[1]
+        starts.append(Lateral(center, turn_of(along, -center), circle_radius, 0.0, focal_px, tapers=False, side=side))
+    return starts
+
+
+def ball_starts(edge: Ridge, points_m: Floats, focal_px: float) -> list[Ball]:
+    """Balls from a ridge and the object's points (N, 3): by its greatest width, and through the points."""
+    widest = int(np.argmax(edge.width_m))
+    radius = max(float(edge.width_m[widest]) / 2, SMALLEST_M)
+    nearest = edge.points_m[widest]
+    starts = [Ball(nearest * (1 + radius / np.linalg.norm(nearest)), radius, focal_px)]
+    sphere = robust_circle(points_m - nearest)
+    if sphere is not None:
+        center, sphere_radius = sphere
+        side = 1 if center @ nearest < 0 else -1
+        starts.append(Ball(nearest + center, sphere_radius, focal_px, side))
+    return starts
+
+
+def robust_line(points_m: Floats) -> tuple[Floats, Floats]:
+    """Middle (3,) and unit direction (3,), in the order of the points (n, 3), of the line through most of them."""
+    weight = np.ones(len(points_m))
+    middle, direction = points_m.mean(axis=0), np.array([0.0, 1.0, 0.0])
+    for _ in range(ROBUST_ROUNDS):
+        middle = np.average(points_m, axis=0, weights=weight)
+        offset = points_m - middle
+        _, vectors = np.linalg.eigh((offset * weight[:, None]).T @ offset)
+        direction = vectors[:, 2]
+        distance = np.linalg.norm(np.cross(offset, direction), axis=1)
+        weight = 1.0 / (1.0 + np.square(distance / max(float(np.median(distance)), SMALLEST_M)))
+    order = np.arange(len(points_m)) - (len(points_m) - 1) / 2
+    return middle, direction if order @ (offset @ direction) >= 0 else -direction
+
+
+def robust_circle(points: Floats) -> tuple[Floats, float] | None:
+    """Centre (d,) and radius of the circle or sphere through most of the points (N, d); None for a flat set.
+
+    |p|^2 = 2 c p + (R^2 - |c|^2) is linear in the centre and in the bracket (Kasa 1976), reweighted by distance.
+    """
+    terms = np.concatenate([2 * points, np.ones((len(points), 1))], axis=1)
+    squared = (points**2).sum(axis=1)
+    weight = np.ones(len(points))
+    center, radius = np.zeros(points.shape[1]), 0.0
+    for _ in range(ROBUST_ROUNDS):
+        weighted = terms * weight[:, None]
+        solution = np.linalg.lstsq(weighted.T @ terms, weighted.T @ squared, rcond=1e-12)[0]
+        center = solution[:-1]
+        radius2 = float(solution[-1] + center @ center)
+        if not radius2 > SMALLEST_M**2:
+            return None
+        radius = float(np.sqrt(radius2))
+        distance = np.abs(np.linalg.norm(points - center, axis=1) - radius)
+        weight = 1.0 / (1.0 + np.square(distance / max(float(np.median(distance)), SMALLEST_M)))
+    return center, radius

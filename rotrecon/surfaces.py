@@ -1,0 +1,223 @@
+"""Surfaces that can be fitted: where rays from the camera first meet them, and how that depends on their parameters."""
+
+from dataclasses import dataclass, replace
+from typing import Literal
+
+import numpy as np
+
+from rotrecon.arrays import Bools, Floats, freeze
+from rotrecon.primitives import basis_across
+
+GRAZING_PX = 0.25
+"""Rays that pass nearer to an outline are traced as if they were so far inside: at the outline itself the depth grows
+with the root of the distance, and its derivative without limit; the mean over a pixel's width is that at a quarter."""
+
+Rays = Floats
+"""(3, N) x, y and 1: directions in camera coordinates, with z = 1, so that the parameter along them is depth."""
+
+
+@dataclass(frozen=True, eq=False)
+class Trace:
+    """Where rays meet a surface, in which a ray that misses is continued smoothly beyond the outline."""
+
+    depth_m: Floats
+    """(N,) along z."""
+    hit: Bools
+    """(N,) which rays truly meet it."""
+    columns: Floats
+    """(k, N) derivatives of the depth by the parameters."""
+
+    def __post_init__(self) -> None:
+        freeze(self)
+
+
+@dataclass(frozen=True, eq=False)
+class Tangency:
+    """How far rays pass outside a surface, negative for those that meet it."""
+
+    gap_m: Floats
+    """(N,)"""
+    depth_m: Floats
+    """(N,) along z, of the point of the ray that is nearest to the surface."""
+    columns: Floats
+    """(k, N) derivatives of the gap by the parameters."""
+
+    def __post_init__(self) -> None:
+        freeze(self)
+
+
+@dataclass(frozen=True, eq=False)
+class _Roots:
+    """The quadratic a z^2 + 2 b z + c of every ray."""
+
+    a: Floats
+    b: Floats
+    c: Floats
+
+    @property
+    def nearest_m(self) -> Floats:
+        """Depth of the point of the ray nearest to the surface."""
+        return -self.b / self.a
+
+    def depth(self, side: int, grazing_disc: Floats) -> tuple[Floats, Floats, Bools]:
+        """Depth of the near (-1) or far (+1) root, the root of the discriminant, at least grazing, and what hits."""
+        disc = self.b**2 - self.a * self.c
+        floor = np.sqrt(grazing_disc)
+        root = np.sqrt(np.maximum(disc, grazing_disc))
+        # below the grazing value the root goes on along its tangent, so that a ray that misses still pulls
+        reach = root + np.minimum(disc - grazing_disc, 0.0) / (2 * floor)
+        return (-self.b + side * reach) / self.a, root, disc > 0
+
+
+@dataclass(frozen=True, eq=False)
+class Lateral:
+    """An infinite cylinder or cone: radius + slope h at height h along the axis."""
+
+    center_m: Floats
+    """(3,) point on the axis."""
+    turn: Floats
+    """(3, 3) rows: across, toward the camera, and the axis' direction."""
+    radius_m: float
+    """At `center_m`."""
+    slope: float
+    focal_px: float
+    tapers: bool
+    """Whether the slope is a parameter."""
+    side: Literal[-1, 1] = -1
+    """-1 seen from outside, 1 from inside."""
+
+    def __post_init__(self) -> None:
+        freeze(self)
+
+    @property
+    def direction(self) -> Floats:
+        """(3,) unit."""
+        return self.turn[2]
+
+    @property
+    def size_m(self) -> float:
+        """The radius at the middle."""
+        return self.radius_m
+
+    def units(self, length_m: float) -> Floats:
+        """(k,) steps of the parameters that move a surface of this length by about a metre."""
+        unit = [1.0, 1.0, 1.0 / length_m, 1.0 / length_m, 1.0]
+        return np.array([*unit, 1.0 / length_m] if self.tapers else unit)
+
+    def _quadratic(self, rays: Rays) -> tuple[Floats, Floats, _Roots]:
+        turned = self.turn @ rays
+        origin = -self.turn @ self.center_m
+        radius = self.radius_m + self.slope * origin[2]
+        growth = self.slope * turned[2]
+        a = turned[0] ** 2 + turned[1] ** 2 - growth**2
+        b = origin[0] * turned[0] + origin[1] * turned[1] - radius * growth
+        c = origin[0] ** 2 + origin[1] ** 2 - radius**2
+        return turned, origin, _Roots(a, b, np.asarray(c))
+
+    def trace(self, rays: Rays) -> Trace:
+        """Where rays meet it; parameters: shift across, shift toward the camera, turn by each, radius, slope."""
+        turned, origin, roots = self._quadratic(rays)
+        nearest = roots.nearest_m
+        grazing = (
+            2 * GRAZING_PX / self.focal_px * roots.a * np.abs(self._radius_there(turned, origin, nearest) * nearest)
+        )
+        depth, root, hit = roots.depth(self.side, grazing)
+        x, y, h = origin[:, None] + depth * turned
+        radius = self.radius_m + self.slope * h
+        lever = h + self.slope * radius
+        columns = [-x, -y, -x * lever, -y * lever, -radius]
+        if self.tapers:
+            columns.append(-radius * h)
+        scale = -self.side / root
+        return Trace(depth, hit, np.stack(columns) * scale)
+
+    def tangency(self, rays: Rays) -> Tangency:
+        """How far rays pass outside it."""
+        turned, origin, roots = self._quadratic(rays)
+        depth = roots.nearest_m
+        x, y, h = origin[:, None] + depth * turned
+        radius = self.radius_m + self.slope * h
+        lever = h + self.slope * radius
+        columns = [-x, -y, -x * lever, -y * lever, -radius]
+        if self.tapers:
+            columns.append(-radius * h)
+        gap = (x**2 + y**2 - radius**2) / (2 * radius)
+        return Tangency(gap, depth, np.stack(columns) / radius)
+
+    def _radius_there(self, turned: Floats, origin: Floats, depth: Floats) -> Floats:
+        return self.radius_m + self.slope * (origin[2] + depth * turned[2])
+
+    def heights(self, points_m: Floats) -> Floats:
+        """Heights (N,) along the axis, from the centre, of points (N, 3)."""
+        return (points_m - self.center_m) @ self.direction
+
+    def stepped(self, step: Floats) -> "Lateral":
+        """The surface after a step (k,) of its parameters."""
+        across, toward, axis = self.turn
+        direction = axis + step[2] * across + step[3] * toward
+        direction = direction / np.linalg.norm(direction)
+        center = self.center_m + step[0] * across + step[1] * toward
+        return replace(
+            self,
+            center_m=center,
+            turn=turn_of(direction, -center),
+            radius_m=self.radius_m + float(step[4]),
+            slope=self.slope + float(step[5]) if self.tapers else self.slope,
+        )
+
+
+@dataclass(frozen=True, eq=False)
+class Ball:
+    """A sphere."""
+
+    center_m: Floats
+    """(3,)"""
+    radius_m: float
+    focal_px: float
+    side: Literal[-1, 1] = -1
+
+    def __post_init__(self) -> None:
+        freeze(self)
+
+    @property
+    def size_m(self) -> float:
+        """The radius."""
+        return self.radius_m
+
+    def units(self, length_m: float) -> Floats:
+        """(4,) ones: every parameter is a length."""
+        return np.ones(4)
+
+    def _quadratic(self, rays: Rays) -> _Roots:
+        a = (rays**2).sum(axis=0)
+        b = -self.center_m @ rays
+        return _Roots(a, b, np.asarray(self.center_m @ self.center_m - self.radius_m**2))
+
+    def trace(self, rays: Rays) -> Trace:
+        """Where rays meet it; parameters: the centre's three coordinates and the radius."""
+        roots = self._quadratic(rays)
+        grazing = 2 * GRAZING_PX / self.focal_px * roots.a * np.abs(self.radius_m * roots.nearest_m)
+        depth, root, hit = roots.depth(self.side, grazing)
+        columns = np.empty((4, len(depth)))
+        columns[:3] = self.center_m[:, None] - depth * rays
+        columns[3] = -self.radius_m
+        return Trace(depth, hit, columns * (-self.side / root))
+
+    def tangency(self, rays: Rays) -> Tangency:
+        """How far rays pass outside it."""
+        depth = self._quadratic(rays).nearest_m
+        offset = depth * rays - self.center_m[:, None]
+        gap = ((offset**2).sum(axis=0) - self.radius_m**2) / (2 * self.radius_m)
+        return Tangency(gap, depth, np.concatenate([-offset, np.full((1, len(depth)), -self.radius_m)]) / self.radius_m)
+
+    def stepped(self, step: Floats) -> "Ball":
+        """The surface after a step (4,) of its parameters."""
+        return replace(self, center_m=self.center_m + step[:3], radius_m=self.radius_m + float(step[3]))
+
+
+Surface = Lateral | Ball
+
+
+def turn_of(direction: Floats, toward: Floats) -> Floats:
+    """(3, 3) rows: a unit vector across, one toward `toward`, and `direction`; a rotation."""
+    return np.stack([*basis_across(direction, toward), direction])
