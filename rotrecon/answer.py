@@ -44,7 +44,7 @@ def answer(result: Reconstruction) -> dict[str, Any]:
         "sections": _sections(result),
         "tool": result.tool.tool.name if isinstance(result.tool, ToolProposal) else None,
         "contact": _contact(result.tool),
-        "reasons": list(result.tool.reasons) if isinstance(result.tool, NoTool) else [],
+        "reasons": list(result.tool.reasons if isinstance(result.tool, NoTool) else result.tool.unsure),
         "candidates": _candidates(result),
         "frame": "base",
         "method": result.settings.method,

@@ -49,7 +49,7 @@ class ToolProposal:
     """(3,) on the surface, at the middle of the object, where it faces the camera."""
     approach: Floats
     """(3,) unit: the way the tool moves to get there, at right angles to the object's axis."""
-    passed_over: tuple[str, ...] = ()
+    unsure: tuple[str, ...] = ()
     """Tools before it in the table that may fit too: a sentence a tool."""
 
     def __post_init__(self) -> None:
@@ -61,8 +61,8 @@ class NoTool:
     """No tool can be named, and why: a sentence a tool."""
 
     reasons: tuple[str, ...]
-    undecided: bool = False
-    """A tool may fit, but the measurement does not decide it."""
+    unsure: tuple[str, ...] = ()
+    """Those of the reasons that leave open whether the tool fits."""
 
 
 @dataclass(frozen=True)
@@ -100,7 +100,7 @@ def propose_tool(
         verdict, is_out = _verdict(objections)
         reasons.append(f"{tool.name}: {verdict}")
         unsure += [] if is_out else reasons[-1:]
-    return NoTool(tuple(reasons), undecided=bool(unsure))
+    return NoTool(tuple(reasons), tuple(unsure))
 
 
 def _contact(solid: Primitive, camera_center_m: Floats) -> tuple[Floats, Floats]:

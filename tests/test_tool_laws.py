@@ -80,10 +80,10 @@ def test_a_tool_is_ruled_out_only_where_it_fits_nothing_of_the_interval(tool: To
     assume(isinstance(answer, NoTool))
     assert isinstance(answer, NoTool)
     assert ("not sure" in answer.reasons[0], "ruled out" in answer.reasons[0]) == (
-        answer.undecided,
-        not answer.undecided,
+        answer.unsure,
+        not answer.unsure,
     )
-    if not answer.undecided:
+    if not answer.unsure:
         assert not any(fits(tool, point) for point in points_in(reading, (0.0, 0.3, 0.6, 1.0)))
 
 
@@ -112,7 +112,7 @@ def test_one_more_reading_never_makes_a_tool_fit(tool: Tool, known: list[Reading
 @given(some_tools(), readings())
 def test_an_interval_within_the_limits_says_what_the_number_says(tool: Tool, reading: Reading) -> None:
     number, interval = choice((Reading(reading.solid),), tool), choice((reading,), tool)
-    assume(not (isinstance(interval, NoTool) and interval.undecided))
+    assume(not (isinstance(interval, NoTool) and interval.unsure))
     assert isinstance(number, ToolProposal) == isinstance(interval, ToolProposal)
     if isinstance(number, ToolProposal) and isinstance(interval, ToolProposal):
         assert np.array_equal(number.contact_point_m, interval.contact_point_m)
@@ -126,7 +126,7 @@ def test_the_first_tool_that_fits_is_proposed_and_otherwise_each_has_its_reason(
     alone = [tool for tool in tools if fits(tool, *read)]
     if isinstance(answer, ToolProposal):
         assert answer.tool is alone[0]
-        assert len(answer.passed_over) < tools.index(answer.tool) + 1
+        assert len(answer.unsure) < tools.index(answer.tool) + 1
     else:
         assert alone == []
         assert len(answer.reasons) == len(tools)

@@ -47,7 +47,7 @@ def test_too_short_for_its_thickness_and_out_of_reach():
     for solid, why in ((pipe(length_m=0.1), "3 times as long as thick"), (pipe(), "reaches 0.5 m")):
         answer = propose_tool((Reading(solid),), CAMERA_M, False, (tool,))
         assert isinstance(answer, NoTool)
-        assert not answer.undecided
+        assert answer.unsure == ()
         assert why in answer.reasons[0]
 
 
@@ -64,7 +64,7 @@ def test_camera_on_the_axis_still_gets_an_approach():
 
 def test_a_size_across_a_limit_is_not_sure_and_says_what_would_settle_it():
     answer = no_tool((Reading(pipe(0.1605), (0.158, 0.163)),))
-    assert answer.undecided
+    assert answer.unsure == answer.reasons[:1]
     assert answer.reasons[0] == (
         "mechanical cutter: takes 15 to 160 mm, the cylinder has 158.0 to 163.0 mm: not sure; "
         "look at it from nearer, or from the side"
@@ -81,10 +81,10 @@ def test_a_later_tool_that_surely_fits_is_proposed_and_the_doubt_about_an_earlie
     proposal = choice((Reading(pipe(0.16), (0.158, 0.163)),), small, large)
     assert isinstance(proposal, ToolProposal)
     assert proposal.tool is large
-    assert [reason.partition(":")[0] for reason in proposal.passed_over] == ["small"]
+    assert [reason.partition(":")[0] for reason in proposal.unsure] == ["small"]
     other = choice((Reading(pipe(0.3), (0.29, 0.31)),), small, large)
     assert isinstance(other, ToolProposal)
-    assert other.passed_over == (), "one that is ruled out is no doubt"
+    assert other.unsure == (), "one that is ruled out is no doubt"
 
 
 @pytest.mark.parametrize(("degrees", "tool"), [(1.0, "mechanical cutter"), (-1.0, "mechanical cutter"), (5.0, None)])
@@ -112,7 +112,7 @@ def test_a_taper_across_what_tools_mind_is_not_sure_for_the_cutter_alone():
     answer = choice((reading,), *default_tools())
     assert isinstance(answer, ToolProposal)
     assert answer.tool.name == "grip"
-    assert "half angle up to 2.9 degrees, the cone has 1.7 to 4.0 degrees: not sure" in answer.passed_over[0]
+    assert "half angle up to 2.9 degrees, the cone has 1.7 to 4.0 degrees: not sure" in answer.unsure[0]
 
 
 def test_ball_or_cone_is_gripped_either_way():
@@ -134,7 +134,7 @@ def test_an_open_end_may_be_long_enough_but_a_closed_one_is_not():
     open_end, closed = (no_tool((Reading(rod, None, length),), clipper) for length in ((0.05, inf), (0.049, 0.051)))
     assert "the rod is at least 2.5 times: not sure; draw more of its length" in open_end.reasons[0]
     assert "2.5 times: ruled out" in closed.reasons[0]
-    assert (open_end.undecided, closed.undecided) == (True, False)
+    assert (len(open_end.unsure), len(closed.unsure)) == (1, 0)
 
 
 def test_what_is_no_interval_or_nothing_at_all_is_the_callers_mistake():
