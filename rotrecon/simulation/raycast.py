@@ -126,13 +126,14 @@ def _cap_hit(solid: Frustum, origins_m: Floats, directions: Floats) -> Floats:
 
 def _convex_hit(shape: Box | Prism, origins_m: Floats, directions: Floats) -> Floats:
     """The last of the faces that a ray goes in through, unless it has gone out through another before."""
-    normals, offset_m = _faces(shape)
-    depth = offset_m - origins_m @ normals.T
-    speed = directions @ normals.T
-    root = depth / speed
-    enter = np.where(speed < 0, root, -np.inf).max(axis=-1)
-    leave = np.where(speed > 0, root, np.inf).min(axis=-1)
-    met = (enter <= leave) & ~((speed == 0) & (depth < 0)).any(axis=-1)
+    enter, leave, met = np.asarray(-np.inf), np.asarray(np.inf), np.asarray(True)
+    for normal, offset_m in zip(*_faces(shape), strict=True):
+        depth, speed = offset_m - origins_m @ normal, directions @ normal
+        root = depth / speed
+        enter = np.maximum(enter, np.where(speed < 0, root, -np.inf))
+        leave = np.minimum(leave, np.where(speed > 0, root, np.inf))
+        met = met & ((speed != 0) | (depth >= 0))
+    met = met & (enter <= leave)
     return np.minimum(_positive(enter, met), _positive(leave, met))
 
 

@@ -1,0 +1,39 @@
+"""Where nothing is round, nothing certain is answered: flat, boxy, cluttered and empty areas."""
+
+from typing import Any
+
+import pytest
+
+from rotrecon.answer import answer
+from rotrecon.drawing import DrawingError
+from rotrecon.reconstruct import reconstruct
+from rotrecon.settings import Settings
+from tests.distractors import AREAS, Area
+
+NO_DEPTH = {"hole", "no depth"}
+MAY_HAVE_NONE = NO_DEPTH | {"few pixels"}
+
+
+def ask(area: Area) -> dict[str, Any] | None:
+    """The answer, or None where the drawing itself is refused."""
+    frame, drawing = area.load()
+    try:
+        return answer(reconstruct(frame, drawing, Settings()))
+    except DrawingError:
+        return None
+
+
+@pytest.mark.parametrize("area", AREAS, ids=str)
+def test_no_certain_answer_where_nothing_is_round(area: Area) -> None:
+    content = ask(area)
+    if content is None:
+        assert area.kind in MAY_HAVE_NONE
+        return
+    assert area.kind not in NO_DEPTH
+    assert content["certain"] is False, content
+    assert content["reasons"] or content["tool"], "an answer that names no tool says why"
+
+
+def test_the_areas_are_many_and_different() -> None:
+    assert len(set(AREAS)) == len(AREAS) >= 200
+    assert sum(area.source != "simulated" for area in AREAS) >= 60
