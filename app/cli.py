@@ -40,6 +40,7 @@ Scene = Annotated[Path, typer.Argument(metavar="SCENE", help="A scene folder.")]
 Layers = Annotated[
     int, typer.Option(min=1, max=9, help="Objects that overlap in depth in the area: the closest one is measured.")
 ]
+MethodName = Annotated[Method, typer.Option(help="How it is measured.")]
 ToolFile = Annotated[Path | None, typer.Option(metavar="FILE", help="A tool table in place of the one that ships.")]
 
 
@@ -62,7 +63,7 @@ def fit(
     kind: Annotated[
         Literal["auto", "cylinder", "rod", "sphere", "cone"], typer.Option(help="What it is, if you know.")
     ] = "auto",
-    method: Annotated[Method, typer.Option(help="How it is measured.")] = "paper",
+    method: MethodName = Settings.method,
     tools: ToolFile = None,
     json_: Annotated[bool, typer.Option("--json", help="Print one JSON object.")] = False,
     overlay: Annotated[Path | None, typer.Option(metavar="OUT.png", help="Write the frame with the result.")] = None,
@@ -113,6 +114,7 @@ def serve(
     scene: Annotated[Path | None, typer.Argument(metavar="[SCENE]", help="A scene folder; without: a demo.")] = None,
     host: Annotated[str, typer.Option(help="Address to listen on.")] = "127.0.0.1",
     port: Annotated[int, typer.Option(min=1, max=65535, help="The next free one if it is taken.")] = 8080,
+    method: MethodName = Settings.method,
     tools: ToolFile = None,
     layers: Layers = 2,
 ) -> None:
@@ -122,7 +124,7 @@ def serve(
     if isinstance(frame, FrameUnavailable):
         typer.echo(f"rotrecon: {frame.reason}", err=True)
         raise typer.Exit(CANNOT)
-    settings = Settings(layers=layers, tools=default_tools() if tools is None else read_tools(tools))
+    settings = Settings(method=method, layers=layers, tools=default_tools() if tools is None else read_tools(tools))
     from app.serving import serve as serve_console  # viser takes a second to import, which no other command needs
 
     serve_console(frame, capture.name, settings, host, port, notes=capture.notes)
@@ -189,8 +191,25 @@ def bench(
     paper_method: Annotated[
         Path | None, typer.Option(metavar="OUT.md", help="Write how good the paper's method is; takes minutes.")
     ] = None,
+    accuracy: Annotated[
+        Path | None, typer.Option(metavar="OUT.md", help="Write how accurate the program is; takes 20 minutes.")
+    ] = None,
+    recordings: Annotated[
+        Path | None, typer.Option(metavar="DIR", help="Recorded scenes to measure too, for --accuracy.")
+    ] = None,
 ) -> None:
-    """Measure the program itself: speed and size beside their targets, in a minute; or the paper's method."""
+    """Measure the program itself: speed and size in a minute, how accurate it is, or the paper's method."""
+    if accuracy is not None:
+        from app.bench.accuracy.document import accuracy_document
+        from app.bench.accuracy.peers import PeerMissing
+
+        try:
+            _write(accuracy, "the document", accuracy_document(recordings).encode())
+        except PeerMissing as error:
+            typer.echo(f"rotrecon: {error}", err=True)
+            raise typer.Exit(BAD_INPUT) from error
+        typer.echo(f"wrote {accuracy}")
+        return
     if paper_method is None:
         from app.bench.console_speed import console_report  # no other command needs the benchmarks
         from app.bench.speed import speed_report

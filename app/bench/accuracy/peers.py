@@ -100,12 +100,19 @@ PEERS: dict[str, Peer] = {"pyransac3d": pyransac3d, "scikit-image": scikit_image
 """None for what a package does not offer."""
 
 
+def require_peers() -> None:
+    """Raise PeerMissing unless all packages are there: better at once than after ten minutes."""
+    for name in ("pyransac3d", "skimage", "meshlib"):
+        _package(name)
+
+
 def _package(name: str) -> Any:
     try:
         return import_module(name)
     except ImportError as error:
+        missing = name.partition(".")[0]
         raise PeerMissing(
-            f"{name.partition('.')[0]} is not installed; the benchmark compares with it: pip install 'rotrecon[bench]'"
+            f"{missing}, which the benchmark compares with, is not installed; run pip install -e '.[bench]'"
         ) from error
 
 

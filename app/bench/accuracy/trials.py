@@ -13,7 +13,7 @@ from typing import TypeVar
 import cv2
 
 from app.bench.accuracy.bound import Bound, cramer_rao, derivatives
-from app.bench.accuracy.clouds import CORRELATED, FULL_MODEL, WHITE, Cell, Cloud, cloud_of, pose_of
+from app.bench.accuracy.clouds import CORRELATED, FULL_MODEL, WHITE, Cell, Cloud, NoiseKind, cloud_of, pose_of
 from app.bench.accuracy.outcome import TRUE_KINDS, Outcome, by_program
 from app.bench.accuracy.peers import PEERS, orthogonal_least_squares
 from rotrecon.settings import Method
@@ -42,6 +42,25 @@ class Trial:
     outcome: Outcome
     bound: Bound
     milliseconds: float
+
+
+class Found:
+    """All trials, found by object, cell and method."""
+
+    def __init__(self, trials: Sequence[Trial]) -> None:
+        self._trials: dict[tuple[str, Cell, str], list[Trial]] = {}
+        for trial in trials:
+            self._trials.setdefault((trial.object_name, trial.cell, trial.method), []).append(trial)
+
+    def of(self, object_name: str, cell: Cell, method: str) -> list[Trial]:
+        """Those of one object in one cell by one method."""
+        return self._trials.get((object_name, cell, method), [])
+
+    def of_noise(self, object_name: str, noise: NoiseKind, method: str) -> list[Trial]:
+        """Those of one object with one kind of noise by one method."""
+        wanted = (object_name, noise, method)
+        parts = [part for (name, cell, by), part in self._trials.items() if (name, cell.noise, by) == wanted]
+        return [trial for part in parts for trial in part]
 
 
 @dataclass(frozen=True)
