@@ -151,6 +151,12 @@ class Lateral:
         """Heights (N,) along the axis, from the centre, of points (N, 3)."""
         return (points_m - self.center_m) @ self.direction
 
+    def off_middle(self, rays: Rays) -> Floats:
+        """How far beside the axis rays (3, N) pass, over the radius there: 1 at the outline."""
+        turned, origin, roots = self._quadratic(rays)
+        x, y, h = origin[:, None] + roots.nearest_m * turned
+        return np.sqrt(x**2 + y**2) / np.maximum(self.radius_m + self.slope * h, 1e-9)
+
     def stepped(self, step: Floats) -> "Lateral":
         """The surface after a step (k,) of its parameters."""
         across, toward, axis = self.turn
@@ -209,6 +215,11 @@ class Ball:
         offset = depth * rays - self.center_m[:, None]
         gap = ((offset**2).sum(axis=0) - self.radius_m**2) / (2 * self.radius_m)
         return Tangency(gap, depth, np.concatenate([-offset, np.full((1, len(depth)), -self.radius_m)]) / self.radius_m)
+
+    def off_middle(self, rays: Rays) -> Floats:
+        """How far beside the centre rays (3, N) pass, over the radius: 1 at the outline."""
+        depth = self._quadratic(rays).nearest_m
+        return np.linalg.norm(depth * rays - self.center_m[:, None], axis=0) / self.radius_m
 
     def stepped(self, step: Floats) -> "Ball":
         """The surface after a step (4,) of its parameters."""

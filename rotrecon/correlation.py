@@ -1,0 +1,72 @@
+"""How far neighbouring residuals err together, which says how many of them are independent."""
+
+from dataclasses import dataclass
+
+import cv2
+import numpy as np
+
+from rotrecon.arrays import Floats
+
+LAGS = (1, 2, 3, 4, 6, 8, 11, 15)
+"""Distances, px, at which residuals are compared."""
+LENGTHS_PX = (0.7, 1.0, 1.5, 2.0, 3.0, 4.0, 5.0, 6.0, 8.0, 10.0, 12.0)
+"""Correlation lengths that are told apart."""
+FEWEST_PAIRS = 30
+"""Fewer say nothing of a lag."""
+
+
+@dataclass(frozen=True)
+class Likeness:
+    """Autocorrelation alike exp(-(lag / length)^2) at lags above 0, and 1 at lag 0."""
+
+    alike: float
+    """From 0 for independent errors to 1 for errors without any independent part."""
+    length_px: float
+
+    @property
+    def independent_share(self) -> float:
+        """Independent measurements a pixel, of a plane full of them: 1 over the sum of the autocorrelation."""
+        return 1.0 / (1.0 + self.alike * max(np.pi * self.length_px**2 - 1.0, 0.0))
+
+    def smeared(self, image: Floats) -> Floats:
+        """An image (h, w) convolved with the autocorrelation."""
+        if self.alike == 0.0:
+            return image
+        half = int(np.ceil(2.5 * self.length_px))
+        lag = np.arange(-half, half + 1)
+        kernel = np.exp(-np.square(lag / self.length_px))
+        together = cv2.sepFilter2D(image, -1, kernel, kernel, borderType=cv2.BORDER_CONSTANT)
+        return self.alike * np.asarray(together) + (1.0 - self.alike) * image
+
+
+def likeness_of(residual: Floats, *, least: Likeness | None = None) -> Likeness:
+    """The likeness of residuals (h, w), NaN where there is none; at least that of the noise itself if it is known."""
+    known = np.isfinite(residual)
+    value = np.where(known, residual, 0.0)
+    lags, alike = [], []
+    variance = float((value**2).sum()) / max(int(known.sum()), 1)
+    for lag in LAGS:
+        total = pairs = 0.0
+        for first, second in ((np.s_[lag:], np.s_[:-lag]), (np.s_[:, lag:], np.s_[:, :-lag])):
+            total += float((value[first] * value[second]).sum())
+            pairs += float((known[first] & known[second]).sum())
+        if pairs >= FEWEST_PAIRS and variance > 0:
+            lags.append(lag)
+            alike.append(total / pairs / variance)
+    found = _fitted(np.array(lags, dtype=np.float64), np.array(alike))
+    if least is None or found.independent_share < least.independent_share:
+        return found
+    return least
+
+
+def _fitted(lags: Floats, alike: Floats) -> Likeness:
+    best = (np.inf, Likeness(0.0, 0.0))
+    for length in LENGTHS_PX:
+        shape = np.exp(-np.square(lags / length))
+        if len(lags) == 0 or (shape**2).sum() == 0:
+            continue
+        share = float(np.clip((shape @ alike) / (shape @ shape), 0.0, 1.0))
+        cost = float(((alike - share * shape) ** 2).sum())
+        if cost < best[0]:
+            best = (cost, Likeness(share, length))
+    return best[1]

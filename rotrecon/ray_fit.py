@@ -1,0 +1,210 @@
+"""One kind of surface fitted to a patch: coarse from a start, then fine, with the weight that each measurement has."""
+
+from dataclasses import dataclass
+
+import numpy as np
+
+from rotrecon.arrays import Bools, Floats, Indices, freeze
+from rotrecon.correlation import Likeness, likeness_of
+from rotrecon.fitting import (
+    Depths,
+    MatchedDepths,
+    Measurement,
+    Outline,
+    Prediction,
+    cauchy,
+    refine,
+    robust_scale,
+    tukey,
+)
+from rotrecon.patch import Patch
+from rotrecon.surfaces import Surface
+
+COARSE_PIXELS = 1200
+"""Enough to find the way; the fine rounds take all."""
+COARSE_SCALE = 0.2
+"""First scale of the coarse rounds over the radius, along the ray."""
+SHRINK = 4.0
+"""From one scale to the next."""
+LAST_SCALE = 2.0
+"""The coarse rounds end at this multiple of the noise."""
+OUTLINE_SCALE = 0.1
+"""Scale of the outline's residuals over that of the depths in coarse rounds, at least one sigma."""
+COARSE_ITERATIONS, FINE_ITERATIONS, FINE_ROUNDS = 6, 8, 3
+OVERSAMPLED, LEAST_PIXELS = 20.0, 4000
+"""Pixels compared for each independent one, and at least: more would only repeat them."""
+NEAR_PX = 4.0
+"""Pixels so far outside the outline still speak for or against it."""
+INLIER_SIGMA = 3.0
+"""Residuals beyond are not asked how alike they are."""
+GOLDEN = 0.6180339887498949
+"""Fractional parts of its multiples fall evenly, whatever the picture's own period."""
+WHOLE = 1e3
+"""A guard that keeps every pixel."""
+
+
+@dataclass(frozen=True)
+class Sight:
+    """Which depths are compared, and how they are predicted."""
+
+    window_px: int = 1
+    """Side of the matching window that is modelled; 1 for none."""
+    guard: float = WHOLE
+    """Pixels are left out whose ray passes farther beside the axis than this share of the radius."""
+
+
+@dataclass(frozen=True, eq=False)
+class RayFit:
+    """A surface, and what it rests on."""
+
+    surface: Surface
+    sight: Sight
+    outlines: tuple[tuple[Outline, float], ...]
+    """Each with its independent share."""
+    free: Bools
+    """(k,) parameters that were fitted."""
+    pixels: Indices
+    """(N,) of the patch, whose depths were compared."""
+    residual: Floats
+    """(N,) in standard deviations of the noise."""
+    sigma: float
+    """Of the residuals of those that fit."""
+    likeness: Likeness
+    covariance: Floats
+    """(k, k), zero for what was not fitted."""
+
+    def __post_init__(self) -> None:
+        freeze(self)
+
+    @property
+    def independent(self) -> float:
+        """How many of the depths err independently."""
+        return len(self.pixels) * self.likeness.independent_share
+
+
+def coarse(start: Surface, patch: Patch, units: Floats, free: Bools, outline: Outline | None) -> Surface:
+    """A surface after rounds over some of the segmented pixels, from a start down to the scale of the noise."""
+    pixels = coarse_pixels(patch)
+    measurements: list[Measurement] = [depths_of(patch, pixels), *([outline] if outline is not None else [])]
+    sigma_m = float(np.median(patch.noise.sigma_m(patch.depth_m[pixels])))
+    scale = max(COARSE_SCALE * start.size_m / sigma_m, LAST_SCALE)
+    surface = start
+    while True:
+        weighting = [(scale, 1.0), (max(OUTLINE_SCALE * scale, 1.0), 1.0)][: len(measurements)]
+        surface = refine(surface, measurements, weighting, cauchy, free, units, COARSE_ITERATIONS).surface
+        if scale <= LAST_SCALE:
+            return surface
+        scale = max(scale / SHRINK, LAST_SCALE)
+
+
+def coarse_pixels(patch: Patch) -> Indices:
+    """Some of the segmented pixels, evenly."""
+    return spread(np.flatnonzero(patch.kept & np.isfinite(patch.depth_m)), COARSE_PIXELS)
+
+
+def fine(
+    surface: Surface,
+    patch: Patch,
+    units: Floats,
+    free: Bools,
+    sight: Sight,
+    outlines: tuple[tuple[Outline, float], ...] = (),
+) -> RayFit | None:
+    """Rounds over the pixels within the outline and close to it; None when there are too few to hold the parameters."""
+    share = 1.0
+    for _ in range(FINE_ROUNDS):
+        pixels = near(surface, patch, patch.drawn & np.isfinite(patch.depth_m), sight)
+        if sight.window_px == 1:
+            pixels = spread(pixels, max(int(OVERSAMPLED * share * len(pixels)), LEAST_PIXELS))
+        if len(pixels) < 2 * len(units):
+            return None
+        depths = _measured(patch, pixels, surface, sight)
+        residual = depths.predict(surface).residual
+        sigma, likeness = _noise_of(patch, pixels, residual)
+        share = likeness.independent_share
+        measurements: list[Measurement] = [depths, *(outline for outline, _ in outlines)]
+        weighting = [(sigma, share), *((1.0, outline_share) for _, outline_share in outlines)]
+        refined = refine(surface, measurements, weighting, tukey, free, units, FINE_ITERATIONS)
+        surface = refined.surface
+    prediction = depths.predict(surface)
+    sigma, likeness = _noise_of(patch, pixels, prediction.residual)
+    covariance = _sandwich(prediction, refined.information, patch, pixels, (sigma, share), likeness, free)
+    return RayFit(surface, sight, outlines, free, pixels, prediction.residual, sigma, likeness, covariance)
+
+
+def _sandwich(
+    prediction: Prediction,
+    information: Floats,
+    patch: Patch,
+    pixels: Indices,
+    weighting: tuple[float, float],
+    likeness: Likeness,
+    free: Bools,
+) -> Floats:
+    """Covariance (k, k) of an estimate whose errors are alike, H^-1 M H^-1 (Huber 1967).
+
+    H is the information the estimate was weighted with, M the variance of its gradient: for the depths J C J' with C
+    their autocorrelation, for outlines, whose share is known, the information itself.
+    """
+    sigma, share = weighting
+    scaled = prediction.residual / sigma
+    _, weight = tukey(scaled)
+    columns = prediction.columns * (weight > 0) / sigma
+    believed = share * (prediction.columns * weight / sigma) @ (prediction.columns / sigma).T
+    spread_of_score = float((weight**2 * scaled**2).sum()) / max(float((weight > 0).sum()), 1.0)
+    smeared = np.empty_like(columns)
+    for number, column in enumerate(columns):
+        image = np.zeros(patch.shape)
+        image.ravel()[pixels] = column
+        smeared[number] = likeness.smeared(image).ravel()[pixels]
+    variance = information - believed + share**2 * spread_of_score * (columns @ smeared.T)
+    result = np.zeros_like(information)
+    kept = np.ix_(free, free)
+    inverse = np.linalg.pinv(information[kept], hermitian=True)
+    result[kept] = inverse @ variance[kept] @ inverse
+    return result
+
+
+def _noise_of(patch: Patch, pixels: Indices, residual: Floats) -> tuple[float, Likeness]:
+    """Sigma of those residuals that fit, and how they are alike."""
+    sigma = max(robust_scale(residual), 1e-9)
+    image = np.full(patch.shape, np.nan)
+    image.ravel()[pixels] = np.where(np.abs(residual) < INLIER_SIGMA * sigma, residual, np.nan)
+    return sigma, likeness_of(image)
+
+
+def depths_of(patch: Patch, pixels: Indices) -> Depths:
+    """The depths of some pixels."""
+    return Depths(patch.rays[:, pixels], patch.noise.steps(patch.depth_m[pixels]), patch.noise)
+
+
+def _measured(patch: Patch, pixels: Indices, surface: Surface, sight: Sight) -> Depths | MatchedDepths:
+    """The depths of some pixels, with all pixels of the surface that their windows may reach if those are modelled."""
+    if sight.window_px == 1:
+        return depths_of(patch, pixels)
+    place = near(surface, patch, np.ones(len(patch.area), dtype=np.bool_), Sight(sight.window_px))
+    position = np.full(len(patch.area), -1, dtype=np.int32)
+    position[place] = np.arange(len(place), dtype=np.int32)
+    pixels_there = position[pixels]
+    steps = patch.noise.steps(patch.depth_m[pixels])
+    return MatchedDepths(patch.rays[:, place], place, patch.shape, sight.window_px, pixels_there, steps, patch.noise)
+
+
+def near(surface: Surface, patch: Patch, among: Bools, sight: Sight) -> Indices:
+    """Pixels within the guard, and within the outline or not farther outside than windows reach and a little more."""
+    pixels = np.flatnonzero(among).astype(np.int32)
+    if surface.side > 0:
+        return pixels
+    rays = patch.rays[:, pixels]
+    if sight.guard < 1:
+        return pixels[surface.off_middle(rays) < sight.guard]
+    tangency = surface.tangency(rays)
+    gap_px = tangency.gap_m * patch.focal_px / np.maximum(tangency.depth_m, 1e-9)
+    return pixels[(gap_px < NEAR_PX + sight.window_px / 2) & (tangency.depth_m > 0)]
+
+
+def spread(pixels: Indices, count: int) -> Indices:
+    """At most `count` of the pixels, evenly."""
+    if len(pixels) <= count:
+        return pixels.astype(np.int32)
+    return pixels[np.sort((np.arange(count) * GOLDEN % 1.0 * len(pixels)).astype(np.int64))].astype(np.int32)
