@@ -5,6 +5,7 @@ from typing import Any
 
 import numpy as np
 
+from app.answers import answer_of
 from rotrecon.arrays import Floats
 from rotrecon.circles import SectionState
 from rotrecon.outcome import Fit
@@ -12,6 +13,8 @@ from rotrecon.reconstruct import Reconstruction
 
 USED, ODD, EXCLUDED, PROFILE, MISSING, LIT = "#3c93d0", "#d55e00", "#8a8a8a", "#009e73", "#e69f00", "#cc79a7"
 """Okabe and Ito's colours, which the colour-blind tell apart, as light and dark backgrounds allow."""
+BAND = "rgba(0, 158, 115, 0.3)"
+"""The same green, for the interval round the fitted line."""
 CHART_HEIGHT_PX = 132
 BOTTOM = 0.04
 """How far up the chart sections without a circle stand: high enough to be seen whole."""
@@ -24,18 +27,23 @@ def _dots(label: str, color: str, size_px: float) -> dict[str, Any]:
 
 RADIUS_SERIES: tuple[Any, ...] = (
     {"label": "mm along the axis"},
+    {"label": "95 %", "stroke": BAND, "fill": BAND, "width": 0, "points": {"show": False}},
+    {"label": "", "class": "rr-unnamed", "width": 0, "points": {"show": False}},
     {"label": "fitted", "stroke": PROFILE, "width": 2, "points": {"show": False}},
     _dots("used", USED, 4),
     _dots("odd radius", ODD, 4),
     _dots("excluded", EXCLUDED, 5),
     _dots("no circle", MISSING, 4),
-    _dots("this section", LIT, 10),
+    _dots("chosen", LIT, 10),
 )
+RADIUS_BANDS: tuple[Any, ...] = ({"series": (1, 2), "fill": BAND},)
 RADIUS_AXES: tuple[Any, ...] = (
     {"size": 34},
     {"label": "radius, mm", "labelSize": 16, "size": 48, "labelFont": "12px sans-serif"},
 )
-NO_CHART: tuple[Floats, ...] = tuple(np.array([0.0, 1.0]) * scale for scale in (1.0, *[np.nan] * 6))
+NO_CHART: tuple[Floats, ...] = tuple(
+    np.array([0.0, 1.0]) * scale for scale in (1.0, *[np.nan] * (len(RADIUS_SERIES) - 1))
+)
 
 
 def section_count(result: Reconstruction | None) -> int:
@@ -59,12 +67,26 @@ def radius_chart(result: Reconstruction | None, section: int) -> tuple[Floats, .
     state = fit.section_state if isinstance(fit, Fit) else circles.state
     fitted_mm = 1000 * fit.solid.radius_at(along_mm / 1000) if isinstance(fit, Fit) else np.full(len(state), np.nan)
     shown = [SectionState.USED, SectionState.ODD_RADIUS, SectionState.EXCLUDED]
-    columns = [along_mm, fitted_mm, *(np.where(state == kind, radius_mm, np.nan) for kind in shown)]
+    columns = [
+        along_mm,
+        *_interval(result, along_mm),
+        fitted_mm,
+        *(np.where(state == kind, radius_mm, np.nan) for kind in shown),
+    ]
     low, high = _radius_range(columns)
     missing = np.where(np.isfinite(radius_mm), np.nan, low + BOTTOM * (high - low))
     lit = np.where(np.isfinite(radius_mm), radius_mm, missing)
     columns += [missing, np.where(np.arange(len(state)) == section, lit, np.nan)]
     return tuple(column[order] for column in columns)
+
+
+def _interval(result: Reconstruction, along_mm: Floats) -> tuple[Floats, Floats]:
+    """Highest and lowest radius (S,), mm, of the 95 % interval at positions along the axis; NaN where none is known."""
+    known = [row for row in answer_of(result)["profile"] if None not in row]
+    if not known:
+        return np.full(len(along_mm), np.nan), np.full(len(along_mm), np.nan)
+    at_mm, _, low_mm, high_mm = np.array(sorted(known)).T
+    return np.interp(along_mm, at_mm, high_mm / 2), np.interp(along_mm, at_mm, low_mm / 2)
 
 
 def _evenly(along_m: Floats) -> Floats:
@@ -85,7 +107,7 @@ def radius_scales(chart: tuple[Floats, ...]) -> dict[str, Any]:
 
 def _radius_range(columns: Sequence[Floats]) -> tuple[float, float]:
     """What holds all radii, with a margin; never magnified so far that noise looks like shape."""
-    radii = np.concatenate(columns[1:5])
+    radii = np.concatenate(columns[1:7])
     radii = radii[np.isfinite(radii)]
     if len(radii) == 0:
         return (0.0, 1.0)

@@ -2,6 +2,7 @@
 
 from typing import Any
 
+from app.wording import candidate_row, certainty, from_to, measured, open_ends, rests_on
 from rotrecon.answer import answer as answer_of
 from rotrecon.outcome import Fit
 from rotrecon.reconstruct import Reconstruction
@@ -18,14 +19,15 @@ def describe_result(result: Reconstruction) -> str:
 
 
 def describe(answer: dict[str, Any]) -> str:
-    """A few lines that say what was measured and which tool fits, or why not."""
+    """A few lines that say what was measured, how sure it is and which tool fits, or why not."""
     if answer["kind"] is None:
         return "\n".join(["No result:", *(f"  {reason}" for reason in answer["reasons"])])
     lines = [
-        f"{'inside of a ' if answer['concave'] else ''}{answer['kind']}, {answer['diameter_mm']:.1f} mm in diameter",
-        "  not certain, and without an interval: the paper's method has no measure of either",
+        f"{'inside of a ' if answer['concave'] else ''}{answer['kind']}, {_diameter(answer)}",
+        f"  {certainty(answer)}",
         *_geometry(answer),
         f"  {answer['arc_deg']:.0f} degrees of it are visible; its pixels lie {answer['rms_mm']:.2f} mm off it (RMS)",
+        *(f"  {name}: {text}" for name, text in rests_on(answer)),
         f"  {_sections(answer['sections'])}",
         f"  candidates: {_candidates(answer['candidates'])}",
         f"  tool: {answer['tool'] or 'none'}",
@@ -34,15 +36,30 @@ def describe(answer: dict[str, Any]) -> str:
     return "\n".join(lines)
 
 
+def _diameter(answer: dict[str, Any]) -> str:
+    interval = answer["interval_mm"]
+    ends = "" if interval is None else f" (95 %: {from_to(interval, ' mm')})"
+    return f"{measured(answer['diameter_mm'], interval, ' mm')} in diameter{ends}"
+
+
 def _geometry(answer: dict[str, Any]) -> list[str]:
-    lines = [f"  middle at {_vector(answer['center_m'])} m in base coordinates"]
-    if answer["length_mm"] is not None:
-        lines.insert(0, f"  {answer['length_mm']:.0f} mm long where it was drawn")
+    lines = [] if answer["length_mm"] is None else [f"  {_length(answer)}"]
+    lines.append(f"  middle at {_vector(answer['center_m'])} m in base coordinates")
     if answer["axis"] is not None:
         lines.append(f"  axis along {_vector(answer['axis']['direction'])}")
     if answer["half_angle_deg"] is not None:
-        lines.append(f"  half angle {answer['half_angle_deg']:.1f} degrees")
+        angle = measured(answer["half_angle_deg"], answer["half_angle_interval_deg"], " degrees")
+        lines.append(f"  half angle {angle}")
     return lines
+
+
+def _length(answer: dict[str, Any]) -> str:
+    """Of an object that ends in the area, or of the part of it that was drawn."""
+    beyond = open_ends(answer)
+    if beyond:
+        return f"at least {answer['length_mm']:.0f} mm long: beyond the area at its {' and its '.join(beyond)}"
+    length = measured(answer["length_mm"], answer["length_interval_mm"], " mm", 0)
+    return f"{length} long" if answer["ends"] else f"{length} long where it was drawn"
 
 
 def _sections(sections: dict[str, Any]) -> str:
@@ -51,7 +68,7 @@ def _sections(sections: dict[str, Any]) -> str:
 
 
 def _candidates(candidates: list[dict[str, Any]]) -> str:
-    return ", ".join(f"{c['kind']} {c['diameter_mm']:.1f} mm (score {c['score']:.2f})" for c in candidates)
+    return ", ".join(f"{name} {diameter} (score {score})" for name, diameter, score in map(candidate_row, candidates))
 
 
 def _vector(numbers: list[float]) -> str:

@@ -4,16 +4,19 @@ from app.events import Refused
 from app.session import Session, sentence
 from rotrecon.outcome import Fit, FitFailure
 from rotrecon.reconstruct import Reconstruction
+from rotrecon.tools import NoTool
 
 
 def warning(session: Session) -> str | None:
-    """Why there is no result for what is shown, or none to rely on, as a sentence; nothing while it is being drawn."""
+    """Why there is no result or no sure tool for what is shown, as a sentence; nothing while it is being drawn."""
     if session.vertices_px:
         return None if session.notice is None else session.notice.text + " Backspace takes a corner back."
     if session.preview is not None or session.measured is None or not session.up_to_date:
         return None
     match session.measured.outcome:
         case Refused(reason=why) | Reconstruction(fit=FitFailure(advice=why) | Fit(doubts=(why, *_))):
+            return sentence(why)
+        case Reconstruction(tool=NoTool(unsure=(why, *_))):
             return sentence(why)
         case _:
             return None

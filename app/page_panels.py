@@ -10,6 +10,7 @@ from viser import ClientHandle, GuiEvent
 from app.charts import (
     CHART_HEIGHT_PX,
     RADIUS_AXES,
+    RADIUS_BANDS,
     RADIUS_SERIES,
     radius_chart,
     radius_scales,
@@ -91,6 +92,7 @@ class PagePanels:
             chart,
             RADIUS_SERIES,
             axes=RADIUS_AXES,
+            bands=RADIUS_BANDS,
             scales=radius_scales(chart),
             legend={"show": True, "live": False},
             height=CHART_HEIGHT_PX,

@@ -1,17 +1,17 @@
 """The result as HTML: its numbers are those of `rotrecon.answer`, and every text from outside is escaped."""
 
 from collections.abc import Sequence
-from functools import lru_cache
 from html import escape
 from typing import Any
 
+from app.answers import answer_of
 from app.hints import hint, warning
 from app.session import Session, sentence
-from rotrecon.answer import answer
+from app.wording import candidate_row, certainty, from_to, measured, open_ends, rests_on
 from rotrecon.outcome import Fit
 from rotrecon.reconstruct import Reconstruction
 from rotrecon.tool_table import Tool
-from rotrecon.tools import ToolProposal
+from rotrecon.tools import NoTool, ToolProposal
 
 REASONS = {
     "empty": "no pixel segmented",
@@ -40,22 +40,40 @@ def result_html(session: Session) -> str:
             '<div class="rr-big rr-dim">&oslash; &ndash; mm</div>'
             f'<div class="rr-small">{nothing}</div></div>'
         )
-    content = _answer(result)
+    content = answer_of(result)
     revision = session.measured.revision if session.measured is not None else -1
     dim = "" if session.up_to_date else " rr-dim"
     concave = ", seen from inside" if content["concave"] else ""
-    tool = content["tool"]
-    doubtful = "doubtful, " if _doubts(result) else ""
-    tool_text = f"<b>{escape(tool)}</b>" if tool else f"<b>No tool</b> &ndash; {doubtful}see &ldquo;Why&rdquo;"
     return (
         f'<div class="rr-result{dim}" data-testid="result" data-revision="{revision}">'
         f'<div class="rr-head"><div class="rr-big" data-field="diameter_mm" data-value="{content["diameter_mm"]}">'
-        f"&oslash; {content['diameter_mm']:.1f} mm</div>"
+        f"&oslash; {measured(content['diameter_mm'], content['interval_mm'], ' mm')}</div>"
         f'<div class="rr-kind" data-field="kind" data-value="{content["kind"]}">{content["kind"]}{concave}</div></div>'
-        f'<div class="rr-small">{_interval(content)}</div>'
-        f'<div class="rr-grid">{_fields(content)}</div>'
-        f'<div class="rr-tool" data-field="tool" data-value="{escape(tool or "")}">Tool: {tool_text}</div></div>'
+        f"{_certainty(content)}"
+        f'<div class="rr-grid">{_fields(content)}</div>{_tool(result, content)}</div>'
     )
+
+
+def _certainty(content: dict[str, Any]) -> str:
+    """The interval by its ends, and whether the kind is certain: amber where it is not."""
+    text, interval = escape(certainty(content)), content["interval_mm"]
+    if interval is None:
+        return f'<div class="rr-small" data-field="certain" data-value="false">{text}</div>'
+    style = "rr-sure" if content["certain"] else "rr-unsure"
+    return (
+        f'<div class="rr-doubt"><span data-field="interval_mm" data-value="{interval}">'
+        f"{from_to(interval, ' mm')} (95 %)</span>"
+        f'<span class="{style}" data-field="certain" data-value="{str(content["certain"]).lower()}">{text}</span></div>'
+    )
+
+
+def _tool(result: Reconstruction, content: dict[str, Any]) -> str:
+    """The tool, or whether it is the size or the choice that is doubtful."""
+    tool = content["tool"]
+    unsure = "not sure, " if isinstance(result.tool, NoTool) and result.tool.unsure else ""
+    doubt = "doubtful, " if _doubts(result) else unsure
+    text = f"<b>{escape(tool)}</b>" if tool else f"<b>No tool</b> &ndash; {doubt}see &ldquo;Why&rdquo;"
+    return f'<div class="rr-tool" data-field="tool" data-value="{escape(tool or "")}">Tool: {text}</div>'
 
 
 def why_html(session: Session) -> str:
@@ -63,17 +81,13 @@ def why_html(session: Session) -> str:
     result = session.reconstruction
     if result is None:
         return f'<div class="rr-why rr-dim">{escape(warning(session) or "Draw an area and an axis first.")}</div>'
-    content = _answer(result)
+    content = answer_of(result)
     doubts = _doubts(result)
     blocks = [("Why not", _list(content["reasons"]))] if content["kind"] is None else []
     if doubts:
         blocks.append(("Doubts", _list([sentence(doubt) for doubt in doubts])))
     if content["kind"] is not None:
-        first_mm = 0.0 if result.first_cut_radius_m is None else 2000 * result.first_cut_radius_m
-        cuts = [("Across the drawn axis", first_mm), ("Across the axis in space", content["diameter_mm"])]
-        blocks.append(("Diameter by the cut", _table([(name, f"{value:.1f} mm") for name, value in cuts if value])))
-        rows = [(c["kind"], f"{c['diameter_mm']:.1f} mm", f"{c['score']:.2f}") for c in content["candidates"]]
-        blocks.append(("Candidates, by score", _table(rows)))
+        blocks += _evidence(result, content)
     dropped = content["sections"]["dropped"].items()
     rows = [("used", str(content["sections"]["used"]))] + [(REASONS.get(str(k), str(k)), str(n)) for k, n in dropped]
     blocks.append(("Sections", _table(rows)))
@@ -82,35 +96,38 @@ def why_html(session: Session) -> str:
     return '<div class="rr-why" data-testid="why">' + "".join(f"<h4>{n}</h4>{body}" for n, body in blocks) + "</div>"
 
 
-@lru_cache(maxsize=2)
-def _answer(result: Reconstruction) -> dict[str, Any]:
-    """The answer, worked out once for all texts that are made of it."""
-    return answer(result)
+def _evidence(result: Reconstruction, content: dict[str, Any]) -> list[tuple[str, str]]:
+    """What the diameter rests on: the other ways to it, the kinds considered, and how well it is known."""
+    first_mm = 0.0 if result.first_cut_radius_m is None else 2000 * result.first_cut_radius_m
+    last = "Across the axis in space" if content["method"] == "paper" else "Fitted to all pixels"
+    cuts = [("Across the drawn axis", first_mm), (last, content["diameter_mm"])]
+    diameters = _table([(name, f"{value:.1f} mm") for name, value in cuts if value])
+    margin = "" if content["margin"] is None else f" (margin {content['margin']:.2g})"
+    candidates = _table([candidate_row(candidate) for candidate in content["candidates"]])
+    blocks = [("Diameter by the cut", diameters), (f"Candidates, by score{margin}", candidates)]
+    known = rests_on(content)
+    return [*blocks, ("How well it is known", _table(known))] if known else blocks
 
 
 def _doubts(result: Reconstruction) -> tuple[str, ...]:
     return result.fit.doubts if isinstance(result.fit, Fit) else ()
 
 
-def _interval(content: dict[str, Any]) -> str:
-    if content["interval_mm"] is None:
-        return "not certain, no interval: the paper&rsquo;s method has no measure of either"
-    low, high = content["interval_mm"]
-    return f"{low:.1f} to {high:.1f} mm (95 %)"
-
-
 def _fields(content: dict[str, Any]) -> str:
     """The smaller numbers, exact values beside the rounded ones."""
     dropped = sum(content["sections"]["dropped"].values())
+    at_least, length = ("&ge; ", None) if open_ends(content) else ("", content["length_interval_mm"])
     fields = [
-        ("Length", "length_mm", "{:.0f} mm"),
-        ("Half angle", "half_angle_deg", "{:.1f}&deg;"),
-        ("RMS", "rms_mm", "{:.2f} mm"),
-        ("Arc seen", "arc_deg", "{:.0f}&deg;"),
+        ("Length", "length_mm", at_least, length, " mm", 0),
+        ("Half angle", "half_angle_deg", "", content["half_angle_interval_deg"], "&deg;", 1),
+        ("RMS", "rms_mm", "", None, " mm", 2),
+        ("Arc seen", "arc_deg", "", None, "&deg;", 0),
     ]
     cells = [
-        FIELD.format(name=name, key=key, exact=content[key], text=form.format(content[key]))
-        for name, key, form in fields
+        FIELD.format(
+            name=name, key=key, exact=content[key], text=before + measured(content[key], interval, unit, decimals)
+        )
+        for name, key, before, interval, unit, decimals in fields
         if content[key] is not None
     ]
     sections = f"{content['sections']['used']} of {content['sections']['used'] + dropped}"
@@ -119,9 +136,9 @@ def _fields(content: dict[str, Any]) -> str:
 
 
 def _tools(result: Reconstruction, reasons: list[str]) -> str:
-    """The tool that fits, or why each does not."""
+    """The tool that fits, with those before it that may fit too; or why none does."""
     if isinstance(result.tool, ToolProposal):
-        return _list([f"{_name(result.tool.tool)} fits: it takes {', '.join(result.tool.tool.takes)}."])
+        reasons = [f"{_name(result.tool.tool)} fits: it takes {', '.join(result.tool.tool.takes)}.", *reasons]
     return _list(reasons)
 
 

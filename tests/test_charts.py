@@ -12,7 +12,7 @@ from rotrecon.reconstruct import Cut, Reconstruction, reconstruct
 from rotrecon.settings import Settings
 from rotrecon.simulation.simulate import simulate
 
-ALONG, FITTED, USED, ODD, EXCLUDED, NO_CIRCLE, LIT = range(len(RADIUS_SERIES))
+ALONG, HIGH, LOW, FITTED, USED, ODD, EXCLUDED, NO_CIRCLE, LIT = range(len(RADIUS_SERIES))
 REFUSAL = FitFailure(FailureReason.NOT_ROUND, "draw anew")
 
 

@@ -1,6 +1,7 @@
 import json
 import sys
 from pathlib import Path
+from typing import get_args
 
 import cv2
 import numpy as np
@@ -9,6 +10,7 @@ import pytest
 from app.cli import main
 from rotrecon.frame import Frame
 from rotrecon.scene.writing import SceneRecord, write_scene
+from rotrecon.settings import Method, Settings
 from rotrecon.simulation.simulate import simulate
 from rotrecon.simulation.truth import write_simulated
 from tests.exact import CAMERA
@@ -178,6 +180,21 @@ def test_serve_refuses_views_with_their_reason(rotrecon):
     code, _, err = rotrecon("serve", recording("virtual_stereo"))
     assert code == 3
     assert "needs stereo matching" in err
+
+
+def test_a_method_is_one_of_those_there_are(rotrecon, scene):
+    for command in (["serve", scene], ["fit", scene, *drawing_of(scene)]):
+        code, _, err = rotrecon(*command, "--method", "guess")
+        assert code == 2
+        assert "guess" in err
+
+
+def test_serve_measures_by_the_method_that_is_given(rotrecon, scene, monkeypatch):
+    served: list[Settings] = []
+    monkeypatch.setattr("app.serving.serve", lambda frame, name, settings, *_, **__: served.append(settings))
+    for method in get_args(Method):
+        assert rotrecon("serve", scene, "--method", method)[0] == 0
+    assert [settings.method for settings in served] == list(get_args(Method))
 
 
 def test_serve_refuses_a_host_that_is_not_this_machine(rotrecon, scene):

@@ -9,6 +9,7 @@ from playwright.sync_api import expect
 from app.object_drawing import Pixel
 from app.pictures import Pictures
 from app.session import Session
+from app.wording import measured
 from rotrecon.answer import answer
 from rotrecon.drawing import AreaOfInterest
 from rotrecon.reconstruct import reconstruct
@@ -43,8 +44,10 @@ def shows_its_result(operator: Operator) -> None:
     for field in ("diameter_mm", "length_mm", "kind", "rms_mm"):
         assert operator.value(field) == str(expected[field])
     assert operator.value("tool") == (expected["tool"] or "")
-    expect(operator.page.locator('[data-field="diameter_mm"]')).to_have_text(
-        re.compile(re.escape(f"{expected['diameter_mm']:.1f} mm"))
+    diameter = measured(expected["diameter_mm"], expected["interval_mm"], " mm")
+    expect(operator.page.locator('[data-field="diameter_mm"]')).to_have_text(re.compile(re.escape(diameter)))
+    expect(operator.page.locator('[data-field="certain"]')).to_have_attribute(
+        "data-value", str(expected["certain"]).lower()
     )
 
 
