@@ -59,8 +59,8 @@ def candidate_name(candidate: dict[str, Any]) -> str:
 
 def candidate_row(candidate: dict[str, Any]) -> tuple[str, str, str]:
     """A kind that was considered, its diameter and its score."""
-    name = candidate_name(candidate) + (", excluded" if candidate["possible"] is False else "")
-    return name, measured(candidate["diameter_mm"], candidate["interval_mm"], " mm"), f"{candidate['score']:.2f}"
+    score = f"{candidate['score']:.2f}" + (", excluded" if candidate["possible"] is False else "")
+    return candidate_name(candidate), measured(candidate["diameter_mm"], candidate["interval_mm"], " mm"), score
 
 
 def open_ends(answer: dict[str, Any]) -> list[str]:

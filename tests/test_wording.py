@@ -73,7 +73,7 @@ def test_intervals_at_the_terminal(result: Reconstruction) -> None:
     assert "axis known within: 0.3 degrees" in text
     assert "depth errs by: 0.60 mm, 0.15 px" in text
     assert "this noise is: estimated from the frame" in text
-    assert "cone of 1.2° 66.8 ± 0.9 mm (score 0.33), sphere, excluded 66.8 ± 0.9 mm (score 0.33)" in text
+    assert "cone of 1.2° 66.8 ± 0.9 mm (score 0.33), sphere 66.8 ± 0.9 mm (score 0.33, excluded)" in text
     open_end = {"start": "closed", "end": "open"}
     assert "at least 112 mm long: beyond the area at its end" in describe(sure_answer(result, ends=open_end))
     cone = sure_answer(result, half_angle_deg=6.9, half_angle_interval_deg=[6.5, 7.3])
