@@ -4,7 +4,7 @@ from functools import lru_cache
 from typing import Any
 
 from rotrecon.answer import answer
-from rotrecon.reconstruct import Reconstruction
+from rotrecon.reconstruction import Reconstruction
 
 
 @lru_cache(maxsize=2)

@@ -9,7 +9,7 @@ from app.answers import answer_of
 from rotrecon.arrays import Floats
 from rotrecon.circles import SectionState
 from rotrecon.outcome import Fit
-from rotrecon.reconstruct import Reconstruction
+from rotrecon.reconstruction import Reconstruction
 
 USED, ODD, EXCLUDED, PROFILE, MISSING, LIT = "#3c93d0", "#d55e00", "#8a8a8a", "#009e73", "#e69f00", "#cc79a7"
 """Okabe and Ito's colours, which the colour-blind tell apart, as light and dark backgrounds allow."""

@@ -17,7 +17,8 @@ from rotrecon.files import write_whole
 from rotrecon.frame import Capture, Frame, FrameUnavailable
 from rotrecon.outcome import FitFailure
 from rotrecon.overlay import outlines, with_outlines, with_segmentation
-from rotrecon.reconstruct import Reconstruction, reconstruct
+from rotrecon.reconstruct import reconstruct
+from rotrecon.reconstruction import Reconstruction
 from rotrecon.scene.formats.image import encode_png
 from rotrecon.scene.importing import ImportOptions, import_scene
 from rotrecon.scene.intrinsics import Intrinsics

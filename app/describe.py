@@ -5,7 +5,7 @@ from typing import Any
 from app.wording import candidate_row, certainty, from_to, measured, open_ends, rests_on
 from rotrecon.answer import answer as answer_of
 from rotrecon.outcome import Fit
-from rotrecon.reconstruct import Reconstruction
+from rotrecon.reconstruction import Reconstruction
 
 
 def describe_result(result: Reconstruction) -> str:

@@ -4,7 +4,7 @@ from dataclasses import dataclass
 
 from app.object_drawing import Part, Pixel
 from rotrecon.primitives import Kind
-from rotrecon.reconstruct import Reconstruction
+from rotrecon.reconstruction import Reconstruction
 
 
 @dataclass(frozen=True)

@@ -3,7 +3,7 @@
 from app.events import Refused
 from app.session import Session, sentence
 from rotrecon.outcome import Fit, FitFailure
-from rotrecon.reconstruct import Reconstruction
+from rotrecon.reconstruction import Reconstruction
 from rotrecon.tools import NoTool
 
 

@@ -5,7 +5,8 @@ import logging
 from app.events import Refused
 from rotrecon.drawing import Drawing, DrawingError
 from rotrecon.frame import Frame
-from rotrecon.reconstruct import Reconstruction, reconstruct
+from rotrecon.reconstruct import reconstruct
+from rotrecon.reconstruction import Reconstruction
 from rotrecon.settings import Settings
 
 log = logging.getLogger(__name__)

@@ -22,7 +22,7 @@ from app.panels import Panels
 from app.pictures import Pictures
 from app.section_drawing import line_text, section_svg, section_text
 from rotrecon.overlay import LIGHT_BLUE, NAVY, RED, YELLOW
-from rotrecon.reconstruct import Reconstruction
+from rotrecon.reconstruction import Reconstruction
 
 JPEG_QUALITY = 80
 LEGEND = (("object", RED), ("accepted", YELLOW), ("close", LIGHT_BLUE), ("distant", NAVY))

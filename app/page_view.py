@@ -26,7 +26,7 @@ from app.pictures import Pictures
 from app.pointer import PixelFinder
 from app.scene_view import SceneView
 from app.session import Notice, Session
-from rotrecon.reconstruct import Reconstruction
+from rotrecon.reconstruction import Reconstruction
 
 NOTICE_SECONDS = 10.0
 BRAND_COLOR = (60, 147, 208)

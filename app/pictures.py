@@ -20,7 +20,7 @@ from rotrecon.overlay import (
     with_outlines,
     with_segmentation,
 )
-from rotrecon.reconstruct import Reconstruction
+from rotrecon.reconstruction import Reconstruction
 
 STAGES: dict[LayerName, Stage] = {"close pixels": "close", "accepted pixels": "accepted", "segmentation": "object"}
 """The layers that are figure 3 a, b and c of the paper."""

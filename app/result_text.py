@@ -9,7 +9,7 @@ from app.hints import hint, warning
 from app.session import Session, sentence
 from app.wording import candidate_row, certainty, from_to, measured, open_ends, rests_on
 from rotrecon.outcome import Fit
-from rotrecon.reconstruct import Reconstruction
+from rotrecon.reconstruction import Reconstruction
 from rotrecon.tool_table import Tool
 from rotrecon.tools import NoTool, ToolProposal
 

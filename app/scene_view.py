@@ -14,7 +14,7 @@ from rotrecon.camera import transform
 from rotrecon.frame import Frame
 from rotrecon.mesh import as_mesh
 from rotrecon.primitives import Primitive
-from rotrecon.reconstruct import Reconstruction
+from rotrecon.reconstruction import Reconstruction
 from rotrecon.tools import NoTool, ToolProposal
 
 OBJECT_COLOR, SOLID_COLOR, AXIS_COLOR, TOOL_COLOR = (220, 40, 40), (86, 180, 233), (0, 200, 255), (240, 228, 66)

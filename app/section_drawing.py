@@ -7,7 +7,7 @@ from rotrecon.arrays import Floats
 from rotrecon.circles import SectionState
 from rotrecon.outcome import Fit
 from rotrecon.overlay import first_cut_line
-from rotrecon.reconstruct import Reconstruction
+from rotrecon.reconstruction import Reconstruction
 
 STATE_TEXT = {
     SectionState.USED: "used",

@@ -36,7 +36,7 @@ from app.object_drawing import (
 from rotrecon.drawing import AreaOfInterest, DrawingError, ObjectAxis, check_area
 from rotrecon.outcome import FitFailure
 from rotrecon.primitives import KINDS
-from rotrecon.reconstruct import Reconstruction
+from rotrecon.reconstruction import Reconstruction
 
 HISTORY_LENGTH = 200
 """Steps that can be undone: more than a person remembers, few enough to keep."""

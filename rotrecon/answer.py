@@ -8,7 +8,7 @@ from rotrecon.arrays import Floats
 from rotrecon.circles import SectionState
 from rotrecon.outcome import Fit, FitFailure, Intervals
 from rotrecon.primitives import Frustum, Primitive
-from rotrecon.reconstruct import Reconstruction
+from rotrecon.reconstruction import Reconstruction
 from rotrecon.tools import NoTool, ToolProposal
 
 NOTHING: dict[str, Any] = dict.fromkeys(

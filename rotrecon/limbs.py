@@ -4,21 +4,16 @@ from dataclasses import dataclass
 
 import numpy as np
 
-from rotrecon.arrays import Floats, Indices, freeze
+from rotrecon.arrays import Bools, Floats, Indices, freeze
+from rotrecon.drawing import CrossSegments
 from rotrecon.fitting import Outline
 from rotrecon.patch import Patch
 from rotrecon.surfaces import Ball, Lateral, Surface
 
-MASK_REACH_PX = 12.0
-"""How far from a predicted outline the mask's edge is looked for."""
-MASK_STEP_PX = 0.5
-"""Pixels are looked up at this pitch."""
 MASK_SIGMA_PX = 1.0
 """Matching moves a mask's edge by a pixel or so, the same way everywhere (measured on rendered pairs)."""
-ONLY_GAP_PX = 1.5
-"""Unknown depth wider than this between object and background leaves the edge anywhere in it."""
-DEEP = 1.5
-"""Radii behind the outline from which on a pixel is background, and before which it is the object."""
+CLEAR_GAP_PX, ANY_GAP_PX = 2.0, 24.0
+"""Unknown depth between object and background that leaves the edge where it is; and the widest that says anything."""
 CLEAR_SHARE = 0.25
 """Of an outline, below which what is seen of the mask's edge says little."""
 CIRCLE_POINTS = 180
@@ -94,30 +89,39 @@ def _of_ball(ball: Ball) -> tuple[Floats, Floats, Indices, Floats]:
     return ball.center_m + ball.radius_m * normals, normals, np.zeros(CIRCLE_POINTS, dtype=np.int32), angle
 
 
-def mask_outline(limbs: Limbs, size_m: float, patch: Patch) -> Outline | None:
-    """The rays at which the object's depth gives way to that of the background; None where that is nowhere seen.
+def mask_outline(
+    segments: CrossSegments, kept: Bools, usable: Bools, patch: Patch, widest_gap_px: float
+) -> Outline | None:
+    """The rays at which the segmented (S, W) object gives way to other usable (S, W) pixels, section by section.
 
-    `size_m` is the object's radius: what lies further behind the limb than a few of it is background.
+    Where depth is unknown between the two, over no more than a gap, the edge may be anywhere in it. None when most
+    sections end at the area's border, or in wider gaps.
     """
-    offset = np.arange(-MASK_REACH_PX, MASK_REACH_PX + MASK_STEP_PX / 2, MASK_STEP_PX)
-    place = limbs.point_px[:, None] + offset[None, :, None] * limbs.normal_px[:, None]
-    pixel = patch.pixel_of(place.reshape(-1, 2)).reshape(len(limbs.point_px), len(offset))
-    behind = np.where(pixel >= 0, patch.depth_m[pixel], np.nan) - limbs.depth_m[:, None]
-    is_object, is_background = np.abs(behind) < DEEP * size_m, behind > DEEP * size_m
-    column = np.arange(len(offset))
-    first_background = np.where(is_background.any(axis=1), is_background.argmax(axis=1), -1)
-    before = is_object & (column < first_background[:, None])
-    last_object = np.where(before.any(axis=1), len(offset) - 1 - before[:, ::-1].argmax(axis=1), -1)
-    gap_px = (first_background - last_object) * MASK_STEP_PX
-    clear = (last_object >= 0) & (gap_px <= ONLY_GAP_PX + MASK_STEP_PX)
-    if clear.sum() < CLEAR_SHARE * len(clear):
+    columns = np.arange(kept.shape[1])
+    found = kept.any(axis=1)
+    places: list[Floats] = []
+    gaps: list[Floats] = []
+    for turned in (1, -1):
+        object_, other = kept[:, ::turned], (usable & ~kept)[:, ::turned]
+        first = object_.argmax(axis=1)
+        last_other = np.maximum.accumulate(np.where(other, columns, -1), axis=1)[np.arange(len(first)), first]
+        gap = first - last_other
+        clear = found & (last_other >= 0) & (gap <= widest_gap_px)
+        column = (first + last_other) / 2 if turned > 0 else kept.shape[1] - 1 - (first + last_other) / 2
+        across = (segments.first_offset_px + column[clear])[:, None] * segments.across
+        places.append(segments.origin_px + np.flatnonzero(clear)[:, None] * segments.along + across)
+        gaps.append(gap[clear].astype(np.float64))
+    gap_px = np.concatenate(gaps)
+    if len(gap_px) < CLEAR_SHARE * 2 * found.sum():
         return None
-    edge = (offset[first_background[clear]] + offset[last_object[clear]]) / 2
-    return outline_at(
-        limbs.point_px[clear] + edge[:, None] * limbs.normal_px[clear], np.full(len(edge), MASK_SIGMA_PX), patch
-    )
+    return outline_at(np.concatenate(places), np.maximum(MASK_SIGMA_PX, gap_px / 2), patch)
 
 
 def outline_at(point_px: Floats, sigma_px: Floats, patch: Patch) -> Outline:
     """An outline through points (n, 2) of the picture."""
     return Outline(patch.camera.unproject(point_px, np.ones(len(point_px))).T, sigma_px, patch.focal_px)
+
+
+def outlines_of(surface: Surface, patch: Patch, length_m: float) -> tuple[tuple[Outline, float], ...]:
+    """The outline in the picture near that of a surface, with the share of its edges that are independent."""
+    return ()

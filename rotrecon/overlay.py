@@ -10,7 +10,7 @@ from rotrecon.arrays import Bools, Bytes, Cloud, Floats, freeze
 from rotrecon.camera import PinholeCamera
 from rotrecon.outcome import Fit
 from rotrecon.primitives import Frustum, Sphere, basis_across
-from rotrecon.reconstruct import Reconstruction
+from rotrecon.reconstruction import Reconstruction
 from rotrecon.segmentation import PixelHistory, Segmentation
 
 Stage = Literal["close", "accepted", "object"]

@@ -6,7 +6,9 @@ import numpy as np
 
 from rotrecon.arrays import Bools, Floats, Indices, freeze
 from rotrecon.correlation import Likeness, likeness_of
+from rotrecon.drawing import CrossSegments
 from rotrecon.fitting import (
+    TO_SIGMA,
     Depths,
     MatchedDepths,
     Measurement,
@@ -37,6 +39,8 @@ NEAR_PX = 4.0
 """Pixels so far outside the outline still speak for or against it."""
 INLIER_SIGMA = 3.0
 """Residuals beyond are not asked how alike they are."""
+LIMB_SHARE = 0.1
+"""Of a section, at each side."""
 GOLDEN = 0.6180339887498949
 """Fractional parts of its multiples fall evenly, whatever the picture's own period."""
 WHOLE = 1e3
@@ -82,24 +86,36 @@ class RayFit:
         return len(self.pixels) * self.likeness.independent_share
 
 
-def coarse(start: Surface, patch: Patch, units: Floats, free: Bools, outline: Outline | None) -> Surface:
-    """A surface after rounds over some of the segmented pixels, from a start down to the scale of the noise."""
-    pixels = coarse_pixels(patch)
-    measurements: list[Measurement] = [depths_of(patch, pixels), *([outline] if outline is not None else [])]
+def coarse(
+    start: Surface, patch: Patch, pixels: Indices, units: Floats, free: Bools, outline: Outline | None
+) -> tuple[float, Surface]:
+    """Scale of what is left, and surface, after rounds over some pixels from a start down to that scale."""
+    depths = depths_of(patch, pixels)
+    measurements: list[Measurement] = [depths, *([outline] if outline is not None else [])]
     sigma_m = float(np.median(patch.noise.sigma_m(patch.depth_m[pixels])))
-    scale = max(COARSE_SCALE * start.size_m / sigma_m, LAST_SCALE)
-    surface = start
+    scale, surface = max(COARSE_SCALE * start.size_m / sigma_m, LAST_SCALE), start
     while True:
         weighting = [(scale, 1.0), (max(OUTLINE_SCALE * scale, 1.0), 1.0)][: len(measurements)]
-        surface = refine(surface, measurements, weighting, cauchy, free, units, COARSE_ITERATIONS).surface
-        if scale <= LAST_SCALE:
-            return surface
-        scale = max(scale / SHRINK, LAST_SCALE)
+        refined = refine(surface, measurements, weighting, cauchy, free, units, COARSE_ITERATIONS)
+        surface = refined.surface
+        left = TO_SIGMA * float(np.median(np.abs(depths.predict(surface).residual)))
+        if max(left, LAST_SCALE) >= scale / 2:
+            return scale, surface
+        scale = max(scale / SHRINK, left, LAST_SCALE)
 
 
-def coarse_pixels(patch: Patch) -> Indices:
-    """Some of the segmented pixels, evenly."""
-    return spread(np.flatnonzero(patch.kept & np.isfinite(patch.depth_m)), COARSE_PIXELS)
+def coarse_pixels(patch: Patch, segments: CrossSegments, kept: Bools) -> Indices:
+    """Some of the segmented pixels, evenly, without those nearest to the limbs, whose depth is believed least.
+
+    `kept` (S, W) are the segmented cells.
+    """
+    count = kept.sum(axis=1, keepdims=True)
+    rank = kept.cumsum(axis=1)
+    inner = kept & (rank > LIMB_SHARE * count) & (rank <= (1 - LIMB_SHARE) * count)
+    width = patch.camera.width
+    place = np.stack(np.divmod(segments.pixel[inner], width)[::-1], axis=-1)
+    pixels = patch.pixel_of(place.astype(np.float64))
+    return spread(np.unique(pixels[np.isfinite(patch.depth_m[pixels])]), COARSE_PIXELS)
 
 
 def fine(
@@ -163,6 +179,11 @@ def _sandwich(
     inverse = np.linalg.pinv(information[kept], hermitian=True)
     result[kept] = inverse @ variance[kept] @ inverse
     return result
+
+
+def predicted(patch: Patch, pixels: Indices, surface: Surface, sight: Sight) -> Prediction:
+    """What a surface predicts for the depths of some pixels."""
+    return _measured(patch, pixels, surface, sight).predict(surface)
 
 
 def _noise_of(patch: Patch, pixels: Indices, residual: Floats) -> tuple[float, Likeness]:

@@ -5,7 +5,7 @@ from typing import Literal
 
 from rotrecon.tool_table import ToolTable, default_tools
 
-Method = Literal["paper"]
+Method = Literal["robust", "paper"]
 
 
 @dataclass(frozen=True)

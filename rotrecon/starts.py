@@ -13,6 +13,10 @@ FEWEST_PIXELS = 3
 """A section with fewer has no middle and no width worth the name."""
 ROBUST_ROUNDS = 8
 """Reweightings of a line or a circle: each halves what outliers pull, or better."""
+CONE_ANGLES_RAD = tuple(np.deg2rad([-45.0, -30.0, -15.0, 15.0, 30.0, 45.0]))
+"""Half angles of cones to start from; nearer ones are found from any of them, or from the cylinder."""
+CONE_ANGLE_HELD = 0.95
+"""Cosine between a start's axis and a direction that is held, below which the start is of no use."""
 SMALLEST_M = 1e-4
 """Radii and spreads below this are rounding."""
 
@@ -46,7 +50,7 @@ def ridge(camera: PinholeCamera, depth_m: Floats, segments: CrossSegments, kept:
     return Ridge(camera.unproject(pixel, depth), width * depth / camera.focal_px)
 
 
-def lateral_starts(edge: Ridge, points_m: Floats, direction: Floats | None, focal_px: float) -> list[Lateral]:
+def cylinder_starts(edge: Ridge, points_m: Floats, direction: Floats | None, focal_px: float) -> list[Lateral]:
     """Cylinders from a ridge and the object's points (N, 3): by its width, and by the circle its sections lie on.
 
     `direction` (3,) is the axis' if it is known; else it is the ridge's own.
@@ -54,17 +58,30 @@ def lateral_starts(edge: Ridge, points_m: Floats, direction: Floats | None, foca
     middle, along = robust_line(edge.points_m)
     if direction is not None:
         along = direction if direction @ along >= 0 else -direction
-    radius = max(float(np.median(edge.width_m)) / 2, SMALLEST_M)
     turn = turn_of(along, -middle)
-    by_width = Lateral(middle - radius * turn[1], turn, radius, 0.0, focal_px, tapers=False)
-    starts = [by_width]
-    offset = (points_m - middle) @ turn[:2].T
-    circle = robust_circle(offset)
+    radius = max(float(np.median(edge.width_m)) / 2, SMALLEST_M)
+    starts = [Lateral(middle - radius * turn[1], turn, radius, 0.0, focal_px, tapers=False)]
+    circle = robust_circle((points_m - middle) @ turn[:2].T)
     if circle is not None:
         (across, toward), circle_radius = circle
-        side = 1 if toward > 0 else -1
         center = middle + across * turn[0] + toward * turn[1]
+        side = 1 if toward > 0 else -1
         starts.append(Lateral(center, turn_of(along, -center), circle_radius, 0.0, focal_px, tapers=False, side=side))
+    return starts
+
+
+def cone_starts(edge: Ridge, direction: Floats | None, focal_px: float) -> list[Lateral]:
+    """Cones of which the ridge is a generator, as wide as it is, of several half angles."""
+    middle, along = robust_line(edge.points_m)
+    toward = turn_of(along, -middle)[1]
+    radius = max(float(np.median(edge.width_m)) / 2, SMALLEST_M)
+    starts: list[Lateral] = []
+    for angle in CONE_ANGLES_RAD:
+        axis = np.cos(angle) * along - np.sin(angle) * toward
+        if direction is not None and abs(axis @ direction) < CONE_ANGLE_HELD:
+            continue
+        turn = turn_of(axis, -middle)
+        starts.append(Lateral(middle - radius * turn[1], turn, radius, float(np.tan(angle)), focal_px, tapers=True))
     return starts
 
 
@@ -85,7 +102,7 @@ def ball_starts(edge: Ridge, points_m: Floats, focal_px: float) -> list[Ball]:
 def robust_line(points_m: Floats) -> tuple[Floats, Floats]:
     """Middle (3,) and unit direction (3,), in the order of the points (n, 3), of the line through most of them."""
     weight = np.ones(len(points_m))
-    middle, direction = points_m.mean(axis=0), np.array([0.0, 1.0, 0.0])
+    middle, offset, direction = points_m.mean(axis=0), points_m, np.array([0.0, 1.0, 0.0])
     for _ in range(ROBUST_ROUNDS):
         middle = np.average(points_m, axis=0, weights=weight)
         offset = points_m - middle
@@ -108,7 +125,7 @@ def robust_circle(points: Floats) -> tuple[Floats, float] | None:
     center, radius = np.zeros(points.shape[1]), 0.0
     for _ in range(ROBUST_ROUNDS):
         weighted = terms * weight[:, None]
-        solution = np.linalg.lstsq(weighted.T @ terms, weighted.T @ squared, rcond=1e-12)[0]
+        solution: Floats = np.linalg.pinv(weighted.T @ terms, rcond=1e-12, hermitian=True) @ (weighted.T @ squared)
         center = solution[:-1]
         radius2 = float(solution[-1] + center @ center)
         if not radius2 > SMALLEST_M**2:

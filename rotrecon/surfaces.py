@@ -12,6 +12,11 @@ GRAZING_PX = 0.25
 """Rays that pass nearer to an outline are traced as if they were so far inside: at the outline itself the depth grows
 with the root of the distance, and its derivative without limit; the mean over a pixel's width is that at a quarter."""
 
+FLANK = 1e-9
+"""Least leading coefficient of the quadratic of a ray."""
+SMALLEST = 1e-12
+"""Least discriminant that is told from zero, m^2."""
+
 Rays = Floats
 """(3, N) x, y and 1: directions in camera coordinates, with z = 1, so that the parameter along them is depth."""
 
@@ -62,6 +67,7 @@ class _Roots:
     def depth(self, side: int, grazing_disc: Floats) -> tuple[Floats, Floats, Bools]:
         """Depth of the near (-1) or far (+1) root, the root of the discriminant, at least grazing, and what hits."""
         disc = self.b**2 - self.a * self.c
+        grazing_disc = np.maximum(grazing_disc, SMALLEST)
         floor = np.sqrt(grazing_disc)
         root = np.sqrt(np.maximum(disc, grazing_disc))
         # below the grazing value the root goes on along its tangent, so that a ray that misses still pulls
@@ -110,6 +116,8 @@ class Lateral:
         radius = self.radius_m + self.slope * origin[2]
         growth = self.slope * turned[2]
         a = turned[0] ** 2 + turned[1] ** 2 - growth**2
+        # a ray along a cone's flank meets it at infinity, one steeper than that from the other side
+        a = np.where(np.abs(a) < FLANK, FLANK, a)
         b = origin[0] * turned[0] + origin[1] * turned[1] - radius * growth
         c = origin[0] ** 2 + origin[1] ** 2 - radius**2
         return turned, origin, _Roots(a, b, np.asarray(c))
@@ -119,7 +127,7 @@ class Lateral:
         turned, origin, roots = self._quadratic(rays)
         nearest = roots.nearest_m
         grazing = (
-            2 * GRAZING_PX / self.focal_px * roots.a * np.abs(self._radius_there(turned, origin, nearest) * nearest)
+            2 * GRAZING_PX / self.focal_px * np.abs(roots.a * self._radius_there(turned, origin, nearest) * nearest)
         )
         depth, root, hit = roots.depth(self.side, grazing)
         x, y, h = origin[:, None] + depth * turned

@@ -10,7 +10,7 @@ from rotrecon.drawing import AreaOfInterest, Drawing, ObjectAxis
 from rotrecon.frame import Frame
 from rotrecon.outcome import Fit
 from rotrecon.primitives import Frustum, Kind, Primitive, Sphere, basis_across
-from rotrecon.reconstruct import Reconstruction
+from rotrecon.reconstruction import Reconstruction
 from rotrecon.simulation.raycast import first_hit
 
 CAMERA = PinholeCamera(320, 240, np.array([[400.0, 0, 159.5], [0, 400.0, 119.5], [0, 0, 1]]))

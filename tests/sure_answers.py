@@ -3,7 +3,7 @@
 from typing import Any
 
 from rotrecon.answer import answer
-from rotrecon.reconstruct import Reconstruction
+from rotrecon.reconstruction import Reconstruction
 
 
 def sure_answer(result: Reconstruction, **changed: Any) -> dict[str, Any]:

@@ -8,7 +8,8 @@ import pytest
 from app.charts import NO_CHART, RADIUS_SERIES, radius_chart, radius_scales
 from rotrecon.circles import SectionCircles, SectionState
 from rotrecon.outcome import FailureReason, Fit, FitFailure
-from rotrecon.reconstruct import Cut, Reconstruction, reconstruct
+from rotrecon.reconstruct import reconstruct
+from rotrecon.reconstruction import Cut, Reconstruction
 from rotrecon.settings import Settings
 from rotrecon.simulation.simulate import simulate
 

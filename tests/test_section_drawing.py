@@ -7,7 +7,8 @@ import pytest
 from app.section_drawing import line_text, section_svg, section_text
 from rotrecon.outcome import FailureReason, FitFailure
 from rotrecon.overlay import first_cut_line
-from rotrecon.reconstruct import Reconstruction, reconstruct
+from rotrecon.reconstruct import reconstruct
+from rotrecon.reconstruction import Reconstruction
 from rotrecon.settings import Settings
 from rotrecon.simulation.simulate import simulate
 

@@ -20,7 +20,8 @@ from app.object_drawing import ObjectDrawing
 from app.result_text import hint_html, result_html, why_html
 from app.session import Session, sentence, step
 from rotrecon.outcome import Fit
-from rotrecon.reconstruct import Reconstruction, reconstruct
+from rotrecon.reconstruct import reconstruct
+from rotrecon.reconstruction import Reconstruction
 from rotrecon.settings import Settings
 from rotrecon.simulation.simulate import simulate
 from rotrecon.tools import NoTool

@@ -14,7 +14,8 @@ from app.events import Reconstructed
 from app.object_drawing import ObjectDrawing
 from app.session import Session, step
 from app.wording import certainty, decimals_for, from_to, measured, plus_minus
-from rotrecon.reconstruct import Reconstruction, reconstruct
+from rotrecon.reconstruct import reconstruct
+from rotrecon.reconstruction import Reconstruction
 from rotrecon.settings import Settings
 from rotrecon.simulation.simulate import simulate
 from rotrecon.tools import NoTool, ToolProposal

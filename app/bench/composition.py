@@ -12,7 +12,8 @@ from rotrecon.circles import SectionCircles, base_points, circumcircles
 from rotrecon.drawing import Drawing, cut_sections
 from rotrecon.frame import Frame
 from rotrecon.radii import SHAPE_OF_KIND, axis_length_radius, fit_radii
-from rotrecon.reconstruct import cut_until_settled, usable_depth
+from rotrecon.reconstruct import usable_depth
+from rotrecon.section_cuts import cut_until_settled
 from rotrecon.segmentation import segment
 from rotrecon.settings import Settings
 

@@ -12,7 +12,8 @@ from rotrecon.circles import base_points, circumcircles
 from rotrecon.drawing import cut_sections
 from rotrecon.outcome import Fit
 from rotrecon.radii import SHAPES, fit_radii
-from rotrecon.reconstruct import Reconstruction, reconstruct, usable_depth
+from rotrecon.reconstruct import reconstruct, usable_depth
+from rotrecon.reconstruction import Reconstruction
 from rotrecon.section_fit import fit_solid
 from rotrecon.segmentation import segment
 from rotrecon.settings import Settings

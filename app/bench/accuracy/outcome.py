@@ -9,7 +9,8 @@ from rotrecon.answer import answer
 from rotrecon.drawing import Drawing
 from rotrecon.outcome import Fit, Range
 from rotrecon.primitives import Primitive, Sphere
-from rotrecon.reconstruct import Reconstruction, reconstruct
+from rotrecon.reconstruct import reconstruct
+from rotrecon.reconstruction import Reconstruction
 from rotrecon.settings import Method, Settings
 
 TRUE_KINDS = {"wire": "rod", "leg": "cylinder", "pipe": "cylinder", "ball": "sphere", "cone": "cone"}

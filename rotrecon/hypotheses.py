@@ -1,0 +1,102 @@
+"""The best coarse surface of each shape: every start is followed a little way, the best of them further."""
+
+from collections.abc import Sequence
+from dataclasses import dataclass, replace
+
+import numpy as np
+
+from rotrecon.arrays import Bools, Floats, Indices, freeze
+from rotrecon.camera import PinholeCamera
+from rotrecon.drawing import CrossSegments
+from rotrecon.fitting import Outline, cauchy
+from rotrecon.limbs import ANY_GAP_PX, mask_outline
+from rotrecon.patch import Patch
+from rotrecon.radii import Shape
+from rotrecon.ray_fit import coarse, coarse_pixels, depths_of, spread
+from rotrecon.starts import Ridge, ball_starts, cone_starts, cylinder_starts, ridge
+from rotrecon.surfaces import Lateral, Surface
+
+SCOUT_PIXELS = 300
+"""For the starts; the best of them goes on with all coarse pixels."""
+SCOUT_EDGES = 40
+
+
+@dataclass(frozen=True, eq=False)
+class Held:
+    """What is known of the object beforehand."""
+
+    direction: Floats | None = None
+    """(3,) unit, of its axis."""
+    radius_m: tuple[float, float] | None = None
+
+    def __post_init__(self) -> None:
+        freeze(self)
+
+    def free(self, surface: Surface) -> Bools:
+        """(k,) which parameters of a surface are to be found."""
+        free = np.ones(len(surface.units(1.0)), dtype=np.bool_)
+        if self.direction is not None and len(free) > 4:
+            free[2:4] = False
+        return free
+
+
+@dataclass(frozen=True, eq=False)
+class Scene:
+    """What of the object is known before anything is fitted."""
+
+    patch: Patch
+    ridge: Ridge
+    pixels: Indices
+    """Some inner ones of the segmented."""
+    outline: Outline | None
+    """Of the segmented pixels."""
+    length_m: float
+
+    def __post_init__(self) -> None:
+        freeze(self)
+
+
+def scene_of(camera: PinholeCamera, patch: Patch, segments: CrossSegments, kept: Bools, depth_m: Floats) -> Scene:
+    """The scene of segmented cells (S, W) of known depth (S, W)."""
+    edge = ridge(camera, depth_m, segments, kept)
+    length_m = float(np.linalg.norm(np.ptp(edge.points_m, axis=0))) if len(edge.points_m) else 0.0
+    usable = segments.inside & np.isfinite(depth_m)
+    outline = mask_outline(segments, kept, usable, patch, ANY_GAP_PX)
+    return Scene(patch, edge, coarse_pixels(patch, segments, kept), outline, length_m)
+
+
+def hypotheses(scene: Scene, held: Held) -> dict[Shape, tuple[float, Surface]]:
+    """Cost and surface of each shape; costs are of the same pixels at the same scale."""
+    patch, pixels = scene.patch, scene.pixels
+    points_m = (patch.rays[:, pixels] * patch.depth_m[pixels]).T
+    focal_px = patch.focal_px
+    starts: dict[Shape, Sequence[Surface]] = {
+        "cylinder": cylinder_starts(scene.ridge, points_m, held.direction, focal_px),
+        "cone": cone_starts(scene.ridge, held.direction, focal_px),
+        "sphere": ball_starts(scene.ridge, points_m, focal_px),
+    }
+    followed = {shape: _best(scene, held, of_shape) for shape, of_shape in starts.items() if shape != "cone"}
+    cylinder = followed["cylinder"][1]
+    assert isinstance(cylinder, Lateral)
+    followed["cone"] = _best(scene, held, [replace(cylinder, tapers=True), *starts["cone"]])
+    scale = min(scale for scale, _ in followed.values())
+    return {shape: (_cost(scene, surface, scale), surface) for shape, (_, surface) in followed.items()}
+
+
+def _best(scene: Scene, held: Held, starts: Sequence[Surface]) -> tuple[float, Surface]:
+    """Scale of the residuals and surface of the start that leads nearest."""
+    scouts = spread(scene.pixels, SCOUT_PIXELS)
+    edges = None if scene.outline is None else scene.outline.chosen(spread(np.arange(len(scene.outline)), SCOUT_EDGES))
+    found = [
+        coarse(start, scene.patch, scouts, start.units(scene.length_m), held.free(start), edges)[1] for start in starts
+    ]
+    best = min(found, key=lambda surface: _cost(scene, surface, 1.0)) if len(found) > 1 else found[0]
+    return coarse(best, scene.patch, scene.pixels, best.units(scene.length_m), held.free(best), scene.outline)
+
+
+def _cost(scene: Scene, surface: Surface, scale: float) -> float:
+    """Of a surface's residuals, heavy-tailed."""
+    cost = float(cauchy(depths_of(scene.patch, scene.pixels).predict(surface).residual / scale)[0].sum())
+    if scene.outline is not None:
+        cost += float(cauchy(scene.outline.predict(surface).residual)[0].sum())
+    return cost if np.isfinite(cost) else np.inf
