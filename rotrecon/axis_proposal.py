@@ -16,8 +16,8 @@ from rotrecon.planes import least_squares
 from rotrecon.settings import Settings
 from rotrecon.stroke_ends import SPAN, Strip, side_of
 
-MEASURES = 2000
-"""Pixels that say how long and wide an object is: to half a percent."""
+MEASURES = 1000
+"""Pixels that say how long and wide an object is: to a percent."""
 STRAIGHT, LONG = 0.5, 0.5
 """What a stroke across the curved or the short side costs: as much as half of the pixels not being symmetric."""
 HOLLOW_BEND = 0.5
@@ -29,7 +29,7 @@ SHIFTS: Floats = SHIFT * np.array([0.0, -1.0, 1.0, -2.0, 2.0, -3.0, 3.0])
 """Places first tried, in widths beside the middle; where nothing speaks for another, the middle is taken."""
 NEARBY = np.array([0.0, -0.5, 0.5, -1.0, 1.0])
 """Turns and shifts tried round the best, in steps that are halved every time."""
-HALVINGS = 5
+HALVINGS = 4
 """From 7.5 degrees and 5 % of the width to a quarter of a degree and 0.2 %."""
 MIDDLE_SHARE = 0.15
 """Share of the width, to each side of the stroke, in which its ends are looked for."""
@@ -86,7 +86,7 @@ class _Shape:
 
     def span(self, directions: Floats) -> tuple[Floats, Floats]:
         """Lowest and highest place (k,) of the object along directions (k, 2), px from its middle."""
-        low, high = np.quantile(self.pixels @ directions.T, SPAN, axis=0)
+        low, high = np.quantile(directions @ self.pixels.T, SPAN, axis=1)
         return low, high
 
     def bend(self, along: Floats) -> Floats:
@@ -114,47 +114,55 @@ def _shape(found: Foreground) -> _Shape:
 def _axis_line(found: Foreground, camera: PinholeCamera) -> tuple[Floats, Floats, float]:
     """A place (2,) on the axis in the frame, its direction (2,), and the object's width across it, px."""
     shape = _shape(found)
-    along = runs_along(found, camera) if shape.straight_and_hollow else None
-    if along is None:
+    hollow_along = runs_along(found, camera) if shape.straight_and_hollow else None
+    if hollow_along is None:
         turn_rad, shift = _most_symmetric(shape, Mirror.of(found, shape.relief, camera))
     else:
-        turn_rad, shift = float(np.arctan2(along[1], along[0])), 0.0
-    places_px, along, width_px = _lines(shape, np.array([turn_rad]), np.array([shift]))
-    return places_px[0], along[0], float(width_px[0])
+        turn_rad, shift = float(np.arctan2(hollow_along[1], hollow_along[0])), 0.0
+    fan = _fan(shape, np.array([turn_rad]), np.array([shift]))
+    return fan.places_px[0, 0], fan.along[0], float(fan.width_px[0])
 
 
 def _most_symmetric(shape: _Shape, mirror: Mirror) -> tuple[float, float]:
     """Direction of the best line, and how many widths beside the middle it lies."""
-    turn_rad, shift = _pairs(shape.long_side_rad + TURNS_RAD, SHIFTS)
-    for halving in range(HALVINGS):
-        best = _cost(shape, mirror, turn_rad, shift).argmin()
-        turn_rad, shift = _pairs(
-            turn_rad[best] + TURN_RAD / 2**halving * NEARBY, shift[best] + SHIFT / 2**halving * NEARBY
-        )
-    best = _cost(shape, mirror, turn_rad, shift).argmin()
-    return float(turn_rad[best]), float(shift[best])
+    best = shape.long_side_rad, 0.0
+    turns_rad, shifts = best[0] + TURNS_RAD, SHIFTS
+    for halving in range(HALVINGS + 1):
+        cost = _cost(shape, mirror, turns_rad, shifts)
+        turn, shift = np.unravel_index(cost.argmin(), cost.shape)
+        best = float(turns_rad[turn]), float(shifts[shift])
+        turns_rad, shifts = best[0] + TURN_RAD / 2**halving * NEARBY, best[1] + SHIFT / 2**halving * NEARBY
+    return best
 
 
-def _pairs(turn_rad: Floats, shift: Floats) -> tuple[Floats, Floats]:
-    """Every turn with every shift."""
-    return np.repeat(turn_rad, len(shift)), np.tile(shift, len(turn_rad))
+@dataclass(frozen=True, eq=False)
+class _Fan:
+    """Lines through an object, in T directions at K places."""
+
+    places_px: Floats
+    """(T, K, 2) on each line, in the frame."""
+    along: Floats
+    """(T, 2) unit."""
+    width_px: Floats
+    """(T,) of the object, across the lines."""
 
 
-def _lines(shape: _Shape, turn_rad: Floats, shift: Floats) -> tuple[Floats, Floats, Floats]:
-    """Place and direction (k, 2) of lines, in the frame, and the width (k,) of the object across them, px."""
-    along = np.stack([np.cos(turn_rad), np.sin(turn_rad)], axis=1)
+def _fan(shape: _Shape, turns_rad: Floats, shifts: Floats) -> _Fan:
+    """Lines in directions (T,), each as many widths beside the middle as there are shifts (K,)."""
+    along = np.stack([np.cos(turns_rad), np.sin(turns_rad)], axis=1)
     low, high = shape.span(_across(along))
-    beside = (low + high) / 2 + shift * (high - low)
-    return shape.middle_px + beside[:, None] * _across(along), along, high - low
+    beside = ((low + high) / 2)[:, None] + shifts * (high - low)[:, None]
+    return _Fan(shape.middle_px + beside[..., None] * _across(along)[:, None], along, high - low)
 
 
-def _cost(shape: _Shape, mirror: Mirror, turn_rad: Floats, shift: Floats) -> Floats:
-    """What speaks (k,) against strokes."""
-    places_px, along, width_px = _lines(shape, turn_rad, shift)
-    first, last = shape.span(along)
-    length_px = last - first
-    crosswise = STRAIGHT * shape.bend(along) + LONG * width_px / (width_px + length_px)
-    return crosswise + mirror.unlikeness(places_px, along)
+def _cost(shape: _Shape, mirror: Mirror, turns_rad: Floats, shifts: Floats) -> Floats:
+    """What speaks (T, K) against strokes in directions (T,) at places (K,)."""
+    fan = _fan(shape, turns_rad, shifts)
+    first, last = shape.span(fan.along)
+    crosswise = STRAIGHT * shape.bend(fan.along) + LONG * fan.width_px / (fan.width_px + last - first)
+    along = np.repeat(fan.along, len(shifts), axis=0)
+    unlikeness = mirror.unlikeness(fan.places_px.reshape(-1, 2), along)
+    return crosswise[:, None] + unlikeness.reshape(len(turns_rad), len(shifts))
 
 
 def _across(along: Floats) -> Floats:
