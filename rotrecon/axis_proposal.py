@@ -16,6 +16,8 @@ from rotrecon.planes import least_squares
 from rotrecon.settings import Settings
 from rotrecon.stroke_ends import SPAN, Strip, side_of
 
+LEAST_SHARE = 0.015
+"""Of an area: an object covers it, ripples of a table and specks do not; a wire in an area twice too large has 0.03."""
 MEASURES = 1000
 """Pixels that say how long and wide an object is: to a percent."""
 STRAIGHT, LONG = 0.5, 0.5
@@ -45,7 +47,7 @@ def propose_axis(frame: Frame, area: AreaOfInterest, settings: Settings) -> Obje
     found = find_foreground(frame, area)
     if isinstance(found, FitFailure):
         return found
-    if found.mask.sum() < FEWEST_PIXELS:
+    if found.mask.sum() < max(FEWEST_PIXELS, LEAST_SHARE * found.patch.inside.sum()):
         advice = "nothing in the area stands out from what is behind it; draw the axis along the object by hand"
         return FitFailure(FailureReason.FLAT, advice)
     start, end = _ends(found, *_axis_line(found, frame.camera), frame.camera)

@@ -81,7 +81,7 @@ class Foreground:
     mask: Bools
     """(h, w) the nearest thing in the area; empty where nothing stands out."""
     planes: tuple[Floats, ...]
-    """(3,) each, of places in the patch (see `planes_through`); the one that most of the surroundings lies on first."""
+    """(3,) each, of pixels of the frame (see `planes_through`); the one that most of the surroundings lies on first."""
 
     def __post_init__(self) -> None:
         freeze(self)
@@ -96,15 +96,15 @@ def find_foreground(frame: Frame, area: AreaOfInterest) -> Foreground | FitFailu
     patch = _patch(frame, area)
     if not (patch.known & patch.inside).any():
         return FitFailure(FailureReason.OUT_OF_REACH, OUT_OF_REACH)
-    places = places_of(patch.known)
+    pixels = patch.frame_px(places_of(patch.known))
     inverse_depth, tolerance = patch.inverse_depth[patch.known], patch.tolerance[patch.known]
     outside = ~patch.inside[patch.known]
     least = int(PLANE_SHARE * outside.sum())
-    planes = planes_through(places[outside], inverse_depth[outside], tolerance[outside], least, MOST_PLANES)
+    planes = planes_through(pixels[outside], inverse_depth[outside], tolerance[outside], least, MOST_PLANES)
     mask, steepest = patch.known & patch.inside, STEEPEST * patch.step_px / frame.camera.focal_px
     stands_out = mask.copy()
     for number, plane in enumerate(planes):
-        stands_out[patch.known] &= np.abs(off_plane(plane, places, inverse_depth)) > OFF_PLANE * tolerance
+        stands_out[patch.known] &= np.abs(off_plane(plane, pixels, inverse_depth)) > OFF_PLANE * tolerance
         if number > 0 and stands_out.sum() < FEWEST_PIXELS:
             planes = planes[:number]  # it was the object's own side, seen round a narrow area
             break
