@@ -18,10 +18,10 @@ from app.bench.accuracy.outcome import TRUE_KINDS, Outcome, by_program
 from app.bench.accuracy.peers import PEERS, orthogonal_least_squares
 from rotrecon.settings import Method
 
-POSES = 250
+POSES = 200
 """Of each object."""
-DRAWS = 2
-"""Noises and drawings of each pose where noise is correlated: as many intervals of one kind as in 500 poses."""
+DRAWS = 3
+"""Noises and drawings of each pose where noise is correlated: intervals of 600 clouds."""
 PEER_POSES = 20
 """The packages of others take up to 3 s a cloud."""
 PEER_CELLS = (WHITE[0], WHITE[4], CORRELATED[0])
