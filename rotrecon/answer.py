@@ -6,7 +6,7 @@ import numpy as np
 
 from rotrecon.arrays import Floats
 from rotrecon.circles import SectionState
-from rotrecon.outcome import Fit, FitFailure, Intervals
+from rotrecon.outcome import Evidence, Fit, FitFailure, Intervals
 from rotrecon.primitives import Frustum, Primitive
 from rotrecon.reconstruction import Reconstruction
 from rotrecon.tools import NoTool, ToolProposal
@@ -30,7 +30,7 @@ def answer(result: Reconstruction) -> dict[str, Any]:
     return {
         **NOTHING,
         "kind": solid.kind,
-        "certain": False,
+        "certain": fit.evidence is not None and fit.evidence.certain,
         "concave": fit.concave,
         "diameter_mm": _mm(2 * float(solid.radius_at(0.0))),
         "length_mm": _mm(solid.ends[1] - solid.ends[0]) if isinstance(solid, Frustum) else None,
@@ -38,6 +38,7 @@ def answer(result: Reconstruction) -> dict[str, Any]:
         "axis": _axis(solid),
         "half_angle_deg": _degrees(solid.half_angle_rad) if solid.kind == "cone" else None,
         **_intervals(fit.intervals),
+        **_evidence(fit.evidence),
         "profile": _profile(result, fit),
         "rms_mm": _mm(fit.rms_m),
         "arc_deg": round(float(np.degrees(fit.arc_rad)), 1),
@@ -81,6 +82,29 @@ def _intervals(intervals: Intervals | None) -> dict[str, Any]:
     }
 
 
+def _evidence(evidence: Evidence | None) -> dict[str, Any]:
+    """What the robust method rests on."""
+    if evidence is None:
+        return {}
+    ends, px = evidence.open_ends, evidence.noise_px
+    return {
+        "margin": round(evidence.margin, 4),
+        "ends": None if ends is None else {"start": _end(ends[0]), "end": _end(ends[1])},
+        "inlier_share": round(evidence.inlier_share, 4),
+        "sigma_over_radius": round(evidence.sigma_over_radius, 6),
+        "noise": {
+            "sigma_mm": _mm(evidence.noise_m),
+            "disparity_sigma_px": None if px is None else round(px, 4),
+            "correlation_px": round(evidence.correlation_px, 2),
+            "stated": evidence.noise_stated,
+        },
+    }
+
+
+def _end(is_open: bool) -> str:
+    return "open" if is_open else "closed"
+
+
 def _sections(result: Reconstruction) -> dict[str, Any]:
     """How many sections of the last cut count, and why the others do not."""
     if isinstance(result.fit, Fit):
@@ -96,8 +120,11 @@ def _profile(result: Reconstruction, fit: Fit) -> list[list[float | None]]:
     """Diameter of every used section against its position from `center_m` along the axis."""
     assert result.second_cut is not None
     used = fit.section_state == SectionState.USED
-    radius = result.second_cut.circles.radius_m[used]
-    return [[_mm(along), _mm(2 * r), None, None] for along, r in zip(fit.along_m[used], radius, strict=True)]
+    along, radius = fit.along_m[used], result.second_cut.circles.radius_m[used]
+    if fit.evidence is None:
+        return [[_mm(h), _mm(2 * r), None, None] for h, r in zip(along, radius, strict=True)]
+    low, high = fit.evidence.radius_low_m[used], fit.evidence.radius_high_m[used]
+    return [[_mm(h), *(_mm(2 * r) for r in of)] for h, *of in zip(along, radius, low, high, strict=True)]
 
 
 def _candidates(result: Reconstruction) -> list[dict[str, Any]]:
@@ -108,10 +135,10 @@ def _candidates(result: Reconstruction) -> list[dict[str, Any]]:
         {
             "kind": "rod" if is_rod and candidate.kind == "cylinder" else candidate.kind,
             "diameter_mm": _mm(2 * candidate.radius_m),
-            "interval_mm": None,
+            "interval_mm": None if candidate.diameter_m is None else [_mm(end) for end in candidate.diameter_m],
             "half_angle_deg": _degrees(candidate.half_angle_rad) if candidate.kind == "cone" else None,
             "score": round(candidate.score, 4),
-            "possible": None,
+            "possible": candidate.possible,
         }
         for candidate in result.candidates
     ]

@@ -1,9 +1,191 @@
-"""stub"""
+"""The robust method: a solid fitted along the rays, its sections, its intervals, and how sure its kind is."""
 
-from rotrecon.arrays import Cloud
-from rotrecon.reconstruction import Reconstruction
+from dataclasses import dataclass, replace
+
+import numpy as np
+
+from rotrecon.arrays import Cloud, Floats, freeze
+from rotrecon.axis import Axis, FittedAxis
+from rotrecon.axis_direction import held_direction
+from rotrecon.extent import Extent, extent_of
+from rotrecon.frame import StereoNoise
+from rotrecon.hypotheses import Held, Scene, scene_of
+from rotrecon.intervals import radius_sigma
+from rotrecon.judgement import doubts_of, failure_of, too_little
+from rotrecon.outcome import Evidence, FailureReason, Fit, FitFailure, Range
+from rotrecon.patch import Patch, patch_of
+from rotrecon.primitives import Primitive
+from rotrecon.recognition import candidates_of, chosen_of, intervals_of, is_possible, solid_of
+from rotrecon.reconstruction import Cut, Reconstruction
+from rotrecon.robust import Ranked, rank
+from rotrecon.section_radii import SectionRadii, section_radii
+from rotrecon.soundness import Soundness, soundness_of
+from rotrecon.starts import robust_line
+from rotrecon.surfaces import Lateral
+from rotrecon.tools import NoTool, Reading, propose_tool
+
+
+@dataclass(frozen=True, eq=False)
+class _Found:
+    """The chosen shape and what is known of it."""
+
+    ranked: tuple[Ranked, ...]
+    chosen: Ranked
+    axis: Axis
+    ends_m: Range
+    """Heights of the ends along the axis, from its point."""
+    extent: Extent | None
+    soundness: Soundness
+
+    def __post_init__(self) -> None:
+        freeze(self)
 
 
 def by_rays(segmented: Reconstruction, depth_m: Cloud) -> Reconstruction:
-    """Soon."""
-    return segmented
+    """The reconstruction of a segmented object, with its solid or the reason why there is none.
+
+    `depth_m` (S, W) is the depth of the cells that was segmented.
+    """
+    frame, drawing, settings = segmented.frame, segmented.drawing, segmented.settings
+    kept = segmented.segmentation.kept & np.isfinite(depth_m)
+    reachable = bool(segmented.segmentation.history.any())
+    patch = patch_of(frame, drawing.area, segmented.segments, kept)
+    scene = scene_of(frame.camera, patch, segmented.segments, kept, depth_m.astype(np.float64))
+    direction = held_direction(frame, drawing)
+    failure = too_little(scene, reachable, settings)
+    if failure is None and isinstance(direction, FitFailure):
+        failure = direction
+    if failure is not None or isinstance(direction, FitFailure):
+        return replace(segmented, fit=failure)
+    held = Held(direction, drawing.constraints.radius_m)
+    found = _find(scene, held, segmented)
+    if isinstance(found, FitFailure):
+        return replace(segmented, fit=found)
+    radii = _sections(found, patch, segmented)
+    excluded = [number for number in drawing.excluded_sections if 0 <= number < len(radii.circles.state)]
+    if excluded:
+        found = _find(replace(scene, patch=_without(patch, radii, excluded)), held, segmented)
+        if isinstance(found, FitFailure):
+            return replace(segmented, fit=found, sections=radii.sections)
+        radii = radii.excluding(excluded)
+    return _reconstruction(segmented, found, radii, scene)
+
+
+def _find(scene: Scene, held: Held, segmented: Reconstruction) -> _Found | FitFailure:
+    """The most credible shape, or the reason why there is none."""
+    kind, settings = segmented.drawing.kind, segmented.settings
+    ranked = rank(scene, held)
+    if not ranked:
+        return too_little(scene, True, settings) or FitFailure(
+            FailureReason.NOT_ROUND, "nothing round could be fitted; draw the area close round one object"
+        )
+    chosen = chosen_of(ranked, kind, settings)
+    if chosen is None:
+        advice = (
+            f"the depths speak for a {ranked[0].shape} rather than a {kind}; choose that, or let the program decide"
+        )
+        return FitFailure(FailureReason.NOT_THIS_KIND, advice)
+    assert chosen.fit is not None
+    surface = chosen.surface
+    if isinstance(surface, Lateral):
+        extent = extent_of(surface, scene.patch, chosen.fit.sigma, chosen.fit.likeness.length_px)
+        height = surface.heights(scene.ridge.points_m)
+        ends_m = (extent.low_m, extent.high_m) if extent else (float(height.min()), float(height.max()))
+        axis = Axis(surface.center_m, surface.direction)
+    else:
+        extent, ends_m = None, (-surface.radius_m, surface.radius_m)
+        axis = Axis(surface.center_m, robust_line(scene.ridge.points_m)[1])
+    soundness = soundness_of(chosen.fit, scene.patch, ends_m)
+    failure = failure_of(chosen, soundness, scene, ends_m, segmented)
+    return failure or _Found(ranked, chosen, axis, ends_m, extent, soundness)
+
+
+def _sections(found: _Found, patch: Patch, segmented: Reconstruction) -> SectionRadii:
+    """As many sections as the drawing has, across the axis, through the depths that agree."""
+    pixels = patch.frame_pixels(np.flatnonzero(found.soundness.agreeing))
+    count = len(segmented.segments.pixel)
+    assert found.chosen.fit is not None
+    return section_radii(found.chosen.fit, found.axis, pixels, segmented.frame.points_m, count, segmented.settings)
+
+
+def _without(patch: Patch, radii: SectionRadii, excluded: list[int]) -> Patch:
+    """A patch less the pixels of sections that the operator took out."""
+    drawn = patch.drawn.copy()
+    width = patch.camera.width
+    for number in excluded:
+        place = np.stack(np.divmod(radii.sections.pixels_in(number), width)[::-1], axis=-1)
+        drawn[patch.pixel_of(place.astype(np.float64))] = False
+    return replace(patch, drawn=drawn)
+
+
+def _reconstruction(segmented: Reconstruction, found: _Found, radii: SectionRadii, scene: Scene) -> Reconstruction:
+    settings, chosen = segmented.settings, found.chosen
+    assert chosen.fit is not None
+    kind = segmented.drawing.kind
+    solid = solid_of(chosen, kind, found.ends_m, found.axis.direction, settings)
+    middle_m = float(found.axis.along(solid.center_m))
+    length_m = None if found.extent is None else found.extent.length_interval_m
+    intervals = intervals_of(chosen, middle_m, length_m)
+    candidates = candidates_of(found.ranked, chosen, middle_m, settings)
+    doubts = doubts_of(chosen, found.soundness, intervals, radii.circles.state, scene, settings)
+    rivals = [one for one in found.ranked if one is not chosen and is_possible(one, chosen, settings)]
+    T_base_camera = segmented.frame.T_base_camera
+    fit = Fit(
+        solid=solid,
+        section_state=radii.circles.state,
+        along_m=radii.heights_m - middle_m,
+        rms_m=_rms(solid.distance(radii.sections.points_of(radii.circles.used))),
+        arc_rad=found.soundness.arc_rad,
+        concave=chosen.surface.side > 0,
+        doubts=doubts,
+        intervals=intervals,
+        evidence=_evidence(segmented, found, scene, radii, not doubts and not rivals, candidates[0].score),
+    )
+    cut = Cut(radii.circles, FittedAxis(found.axis.point_m, found.axis.direction, radii.circles.used))
+    result = replace(segmented, fit=fit, sections=radii.sections, second_cut=cut, candidates=candidates)
+    in_base = solid.moved(T_base_camera)
+    if doubts:
+        return replace(result, solid=in_base, tool=NoTool(doubts))
+    readings = [_reading(found, chosen, in_base, middle_m)]
+    for one in rivals:
+        other = solid_of(one, None, found.ends_m, found.axis.direction, settings)
+        readings.append(_reading(found, one, other.moved(T_base_camera), middle_m))
+    tool = propose_tool(tuple(readings), T_base_camera[:3, 3], fit.concave, settings.tools)
+    return replace(result, solid=in_base, tool=tool)
+
+
+def _reading(found: _Found, one: Ranked, solid: Primitive, middle_m: float) -> Reading:
+    """What the object may be, for the choice of a tool; an open end may lie anywhere beyond."""
+    intervals = intervals_of(one, middle_m, None if found.extent is None else found.extent.length_interval_m)
+    length_m = intervals.length_m
+    if length_m is None and found.extent is not None:
+        length_m = (found.extent.length_m, np.inf)
+    return Reading(solid, intervals.diameter_m, length_m, intervals.half_angle_rad)
+
+
+def _evidence(
+    segmented: Reconstruction, found: _Found, scene: Scene, radii: SectionRadii, certain: bool, margin: float
+) -> Evidence:
+    fit, surface, noise = found.chosen.fit, found.chosen.surface, scene.patch.noise
+    assert fit is not None
+    depth_m = float(surface.center_m[2]) - surface.side * surface.size_m
+    stated = segmented.frame.noise
+    baseline_m = stated.baseline_m if isinstance(stated, StereoNoise) else None
+    noise_m = float(noise.sigma_m(depth_m))
+    return Evidence(
+        certain=certain,
+        margin=margin,
+        inlier_share=found.soundness.inlier_share,
+        sigma_over_radius=radius_sigma(fit) / surface.size_m,
+        noise_m=noise_m,
+        noise_px=None if baseline_m is None else noise_m * scene.patch.focal_px * baseline_m / depth_m**2,
+        correlation_px=max(noise.correlation_px, fit.likeness.length_px if fit.likeness.alike > 0 else 0.0),
+        noise_stated=noise.stated,
+        open_ends=None if found.extent is None else (found.extent.low_open, found.extent.high_open),
+        radius_low_m=radii.low_m,
+        radius_high_m=radii.high_m,
+    )
+
+
+def _rms(distance_m: Floats) -> float:
+    return float(np.sqrt(np.mean(np.square(distance_m)))) if len(distance_m) else 0.0

@@ -1,6 +1,6 @@
 """Which depths near the limbs can be believed: all, those that a matching window explains, or only inner ones."""
 
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 
 import numpy as np
 
@@ -23,6 +23,8 @@ ROUGHER = 1.1
 """Depths that err in one way alone do not become rougher toward the limbs by more than this, and by chance."""
 CHANCE = 2.5
 """Standard deviations by which a size may differ from that of the inner depths."""
+CORRECTION_DOUBT = 0.25
+"""Standard deviation of a correction for the limbs, over the correction."""
 FEWEST_INDEPENDENT = 8.0
 """Inner depths that are fewer than that can judge nothing."""
 
@@ -50,12 +52,12 @@ def settle(surface: Surface, task: Task) -> RayFit | None:
     windowed = _fit(surface, task, Sight(window_px)) if 3 <= window_px <= LARGEST_WINDOW_PX else None
     smoothest = min((fit for fit in (whole, windowed) if fit), key=lambda fit: fit.sigma)
     if inner is None or _agrees(smoothest, inner):
-        return smoothest
+        return smoothest if smoothest is whole else _doubting(smoothest, whole)
     for guard in GUARDS:
         guarded = _fit(inner.surface, task, Sight(guard=guard))
         if guarded is not None and _agrees(guarded, inner):
-            return guarded
-    return inner
+            return _doubting(guarded, whole)
+    return _doubting(inner, whole)
 
 
 def _fit(surface: Surface, task: Task, sight: Sight) -> RayFit | None:
@@ -69,6 +71,14 @@ def _agrees(fit: RayFit, inner: RayFit) -> bool:
     variance = np.maximum(np.diag(inner.covariance) - np.diag(fit.covariance), 0.0)[_size_of(fit)]
     apart = abs(fit.surface.size_m - inner.surface.size_m)
     return not rougher and bool(apart <= CHANCE * np.sqrt(variance) + 1e-6)
+
+
+def _doubting(fit: RayFit, whole: RayFit) -> RayFit:
+    """A fit whose radius is less sure by a share of what the limbs, taken as they are, would have changed."""
+    place = _size_of(fit)
+    covariance = fit.covariance.copy()
+    covariance[place, place] += (CORRECTION_DOUBT * (fit.surface.size_m - whole.surface.size_m)) ** 2
+    return replace(fit, covariance=covariance)
 
 
 def _size_of(fit: RayFit) -> int:

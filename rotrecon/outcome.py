@@ -63,6 +63,39 @@ class Candidate:
     """Share of belief from 0 to 1; those of all candidates add up to 1."""
     half_angle_rad: float = 0.0
     """Of a cone."""
+    diameter_m: Range | None = None
+    possible: bool | None = None
+    """Whether the object may be of this kind; None by the paper's method, which cannot tell."""
+
+
+@dataclass(frozen=True, eq=False)
+class Evidence:
+    """What a fit by the robust method rests on."""
+
+    certain: bool
+    """No other kind is possible, and nothing speaks against the solid."""
+    margin: float
+    """By how much the kind's score is above that of the next."""
+    inlier_share: float
+    """Of the known depths inside its outline, those that agree with the solid."""
+    sigma_over_radius: float
+    """Standard error of the radius over the radius."""
+    noise_m: float
+    """Standard deviation of depth at the object."""
+    noise_px: float | None
+    """The same in disparity; None where the baseline is not known."""
+    correlation_px: float
+    """How far its errors are alike."""
+    noise_stated: bool
+    """By the scene; else estimated."""
+    open_ends: tuple[bool, bool] | None
+    """Whether it goes on beyond the area at its start and its end along the stroke; None for a sphere."""
+    radius_low_m: Floats
+    """(S,) lower limits of the radii of the sections, NaN where there is none."""
+    radius_high_m: Floats
+
+    def __post_init__(self) -> None:
+        freeze(self)
 
 
 @dataclass(frozen=True, eq=False)
@@ -86,6 +119,8 @@ class Fit:
     """Of a sphere: the radius by equation (16), the paper's second variant."""
     intervals: Intervals | None = None
     """None by the paper's method, which has no measure of them."""
+    evidence: Evidence | None = None
+    """The same."""
 
     def __post_init__(self) -> None:
         freeze(self)

@@ -51,6 +51,12 @@ class Patch:
         """Focal length."""
         return self.camera.focal_px
 
+    def frame_pixels(self, pixels: Indices) -> Indices:
+        """Index (n,) into the flattened frame of pixels (n,) of the patch."""
+        row, column = np.divmod(pixels, self.shape[1])
+        left, top = self.corner_px.astype(np.int32)
+        return ((row + top) * self.camera.width + column + left).astype(np.int32)
+
     def pixel_of(self, place_px: Floats) -> Indices:
         """Flat index (n,) of the pixels under places (n, 2) of the frame; -1 outside the rectangle."""
         column, row = np.floor(np.nan_to_num(place_px - self.corner_px, nan=-1.0) + 0.5).astype(np.int32).T

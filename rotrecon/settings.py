@@ -55,4 +55,27 @@ class Settings:
     """A kind that is asked for may deviate so many times more from the sections than the most credible one."""
     correlated_sections: float = 8.0
     """Neighbouring sections that err together: errors of matched depth are correlated over 5 to 12 px."""
+    minimum_pixels: int = 60
+    """Fewer segmented pixels do not hold a surface."""
+    thinnest_px: float = 5.0
+    """Narrower objects have no pixel whose depth is that of their surface alone."""
+    flat_sigma_over_radius: float = 0.35
+    """Standard error of the radius over the radius above which nothing says that the surface is round at all."""
+    flat_arc_rad: float = 0.35
+    """Arcs of less than 20 degrees look flat."""
+    shortest_arc_rad: float = 0.6
+    """Arcs of less than 35 degrees hold no radius that could be relied on."""
+    most_off_stroke_rad: float = 0.6
+    """An axis that far (35 degrees) off the stroke is not that of the object that was meant."""
+    least_inlier_share: float = 0.5
+    """Of the depths inside the outline: fewer that agree make no object."""
+    doubtful_inlier_share: float = 0.75
+    doubtful_goes_on: float = 0.5
+    """Share of one side's outline beyond which the surface goes on."""
+    widest_interval: float = 0.35
+    """Width of the interval of the diameter over the diameter."""
+    excluded_cost: float = 4.6
+    """Half the information criterion by which a kind must be worse to be excluded: a hundred times less credible."""
+    asked_cost: float = 25.0
+    """The same for a kind that was asked for: worse than this, the depths speak against it."""
     tools: ToolTable = field(default_factory=default_tools)

@@ -1,0 +1,94 @@
+"""When a measured solid is no answer, and when it is one that nobody should rely on; with what to do about it."""
+
+import numpy as np
+
+from rotrecon.arrays import Bytes
+from rotrecon.circles import SectionState
+from rotrecon.hypotheses import Scene
+from rotrecon.intervals import radius_sigma
+from rotrecon.outcome import DRAW_CLOSE, FailureReason, FitFailure, Intervals, Range
+from rotrecon.reconstruction import Reconstruction
+from rotrecon.robust import Ranked
+from rotrecon.settings import Settings
+from rotrecon.soundness import Soundness
+from rotrecon.surfaces import Lateral
+
+
+def too_little(scene: Scene, reachable: bool, settings: Settings) -> FitFailure | None:
+    """Why nothing can be fitted to a scene, before anything is."""
+    sections, width_px = len(scene.ridge.points_m), 0.0
+    if sections:
+        width_px = float(np.median(scene.ridge.width_m / scene.ridge.points_m[:, 2])) * scene.patch.focal_px
+    if not reachable:
+        advice = "everything in the area is outside the arm's limits; move the arm or the limits"
+        return FitFailure(FailureReason.OUT_OF_REACH, advice)
+    if sections < settings.minimum_axis_px or len(scene.pixels) < settings.minimum_pixels:
+        advice = f"only {sections} sections and {len(scene.pixels)} pixels show an object; {DRAW_CLOSE}"
+        return FitFailure(FailureReason.TOO_FEW_SECTIONS, advice)
+    if width_px < settings.thinnest_px:
+        advice = f"the object is only {width_px:.0f} px wide; bring the camera nearer"
+        return FitFailure(FailureReason.TOO_THIN, advice)
+    return None
+
+
+def failure_of(
+    chosen: Ranked, soundness: Soundness, scene: Scene, ends_m: Range, segmented: Reconstruction
+) -> FitFailure | None:
+    """Why a fit is no result: flat, too short an arc, not along the stroke, not round."""
+    assert chosen.fit is not None
+    settings, surface = segmented.settings, chosen.surface
+    arc_deg = np.degrees(soundness.arc_rad)
+    unsure = radius_sigma(chosen.fit) / surface.size_m
+    if unsure > settings.flat_sigma_over_radius or soundness.arc_rad < settings.flat_arc_rad:
+        advice = f"what is drawn is flat: no radius can be told from it, {arc_deg:.0f} degrees are seen; {DRAW_CLOSE}"
+        return FitFailure(FailureReason.FLAT, advice)
+    if soundness.arc_rad < settings.shortest_arc_rad:
+        advice = (
+            f"only {arc_deg:.0f} degrees of something round are seen, too few to measure it; "
+            "draw the area over its whole width, or look at it from elsewhere"
+        )
+        return FitFailure(FailureReason.SHORT_ARC, advice)
+    if isinstance(surface, Lateral) and _off_stroke(surface, segmented) > settings.most_off_stroke_rad:
+        advice = "the object does not lie along the stroke; draw the axis along it, or leave it to the program"
+        return FitFailure(FailureReason.OFF_AXIS, advice)
+    if soundness.inlier_share < settings.least_inlier_share or soundness.roughness > settings.rms_over_radius:
+        share = f"{100 * soundness.inlier_share:.0f} % of the depths agree"
+        advice = f"no body of revolution explains what is drawn: with the best {chosen.shape} {share}; {DRAW_CLOSE}"
+        return FitFailure(FailureReason.NOT_ROUND, advice)
+    return None
+
+
+def _off_stroke(surface: Lateral, segmented: Reconstruction) -> float:
+    """Angle in the picture between the axis and the stroke."""
+    camera, segments = segmented.frame.camera, segmented.segments
+    ends = camera.project(surface.center_m + np.outer([-0.01, 0.01], surface.direction))
+    along = ends[1] - ends[0]
+    return float(np.arccos(np.clip(abs(along @ segments.along) / max(np.linalg.norm(along), 1e-12), 0, 1)))
+
+
+def doubts_of(
+    chosen: Ranked, soundness: Soundness, intervals: Intervals, state: Bytes, scene: Scene, settings: Settings
+) -> tuple[str, ...]:
+    """Why no tool should rely on a size."""
+    doubts: list[str] = []
+    low, high = intervals.diameter_m
+    if high - low > settings.widest_interval * chosen.surface.size_m * 2:
+        doubts.append(
+            f"the diameter is known only to lie between {1000 * low:.0f} and {1000 * high:.0f} mm; "
+            "bring the camera nearer, or draw more of the object"
+        )
+    if soundness.inlier_share < settings.doubtful_inlier_share:
+        doubts.append(
+            f"only {100 * soundness.inlier_share:.0f} % of the depths agree with the {chosen.shape}; "
+            "draw the area closer round one object"
+        )
+    if chosen.surface.side < 0 and max(soundness.goes_on) > settings.doubtful_goes_on:
+        doubts.append("the surface goes on beside the object; draw the axis along one object that stands alone")
+    if soundness.arc_rad < settings.doubtful_arc_rad:
+        doubts.append(
+            f"only {np.degrees(soundness.arc_rad):.0f} degrees of the surface are seen; "
+            "draw the area over its whole width, or look at it from elsewhere"
+        )
+    if (state == SectionState.USED).mean() < settings.doubtful_circles:
+        doubts.append("few sections agree; draw the axis along the object, inside the area")
+    return tuple(doubts)

@@ -1,0 +1,103 @@
+"""Which kind of solid the depths speak for, and which others they leave possible (paper table 1)."""
+
+import numpy as np
+
+from rotrecon.intervals import ball_intervals, lateral_intervals
+from rotrecon.outcome import Candidate, Intervals, Range
+from rotrecon.primitives import Frustum, Kind, Primitive, Sphere
+from rotrecon.radii import SHAPE_OF_KIND
+from rotrecon.robust import Ranked
+from rotrecon.settings import Settings
+from rotrecon.surfaces import Ball, Lateral
+
+
+def chosen_of(ranked: tuple[Ranked, ...], kind: Kind | None, settings: Settings) -> Ranked | None:
+    """The most credible shape, or that of the kind asked for; None when the depths speak against that kind.
+
+    A cone that hardly tapers is a cylinder unless the depths insist.
+    """
+    fitted = [one for one in ranked if one.fit is not None]
+    if kind is not None:
+        asked = [one for one in fitted if one.shape == SHAPE_OF_KIND[kind] and one.cost <= settings.asked_cost]
+        return asked[0] if asked else None
+    best = fitted[0]
+    if best.shape == "cone" and abs(half_angle_rad(best)) < settings.cone_half_angle_rad:
+        straight = [one for one in fitted if one.shape == "cylinder" and one.cost <= settings.excluded_cost]
+        return straight[0] if straight else best
+    return best
+
+
+def half_angle_rad(one: Ranked) -> float:
+    """Of a shape; 0 for all but cones."""
+    return float(np.arctan(one.surface.slope)) if isinstance(one.surface, Lateral) else 0.0
+
+
+def is_possible(one: Ranked, chosen: Ranked, settings: Settings) -> bool:
+    """Whether the object may be of a shape other than the chosen one, in a way that makes a difference."""
+    if one is chosen:
+        return True
+    if one.fit is None or one.cost - chosen.cost > settings.excluded_cost:
+        return False
+    if one.shape == "cone" and chosen.shape == "cylinder":
+        # a cone holds every cylinder: it is another kind only as far as it may taper
+        return not is_straight(one, settings)
+    return True
+
+
+def is_straight(one: Ranked, settings: Settings) -> bool:
+    """Whether a cone tapers so little, at any angle it may have, that it is as good as a cylinder."""
+    assert one.fit is not None
+    assert isinstance(one.surface, Lateral)
+    low, high = intervals_of(one, 0.0, None).half_angle_rad or (0.0, 0.0)
+    return max(abs(low), abs(high)) < settings.cone_half_angle_rad
+
+
+def intervals_of(one: Ranked, middle_m: float, length_m: Range | None) -> Intervals:
+    """Of a fitted shape, a lateral one's diameter at a height of `middle_m` from its surface's centre."""
+    assert one.fit is not None
+    if isinstance(one.surface, Ball):
+        return ball_intervals(one.fit, one.surface)
+    return lateral_intervals(one.fit, one.surface, middle_m, length_m)
+
+
+def candidates_of(
+    ranked: tuple[Ranked, ...], chosen: Ranked, middle_m: float, settings: Settings
+) -> tuple[Candidate, ...]:
+    """All shapes as candidates, the chosen one first; scores are the weights of the information criterion."""
+    order = [chosen, *(one for one in ranked if one is not chosen)]
+    weight = np.exp([-one.cost for one in order])
+    return tuple(
+        Candidate(
+            kind=one.shape,
+            radius_m=_radius_at(one, middle_m),
+            score=float(share),
+            half_angle_rad=half_angle_rad(one),
+            diameter_m=None if one.fit is None else intervals_of(one, middle_m, None).diameter_m,
+            possible=is_possible(one, chosen, settings),
+        )
+        for one, share in zip(order, weight / weight.sum(), strict=True)
+    )
+
+
+def _radius_at(one: Ranked, middle_m: float) -> float:
+    surface = one.surface
+    return surface.radius_m + surface.slope * middle_m if isinstance(surface, Lateral) else surface.radius_m
+
+
+def solid_of(one: Ranked, kind: Kind | None, ends_m: Range, direction: np.ndarray, settings: Settings) -> Primitive:
+    """A shape as a solid, a lateral one between two heights from its surface's centre; `direction` is a ball's."""
+    surface = one.surface
+    if isinstance(surface, Ball):
+        return Sphere(surface.center_m, direction, surface.radius_m)
+    length_m, middle_m = ends_m[1] - ends_m[0], (ends_m[0] + ends_m[1]) / 2
+    radius_m = surface.radius_m + surface.slope * middle_m
+    thin = 2 * radius_m <= settings.rod_diameter_m and length_m >= 2 * settings.rod_length_over_diameter * radius_m
+    is_rod = kind == "rod" or (kind is None and thin)
+    return Frustum(
+        kind="cone" if one.shape == "cone" else "rod" if is_rod else "cylinder",
+        center_m=surface.center_m + middle_m * surface.direction,
+        direction=surface.direction,
+        length_m=length_m,
+        radius_m=radius_m,
+        half_angle_rad=half_angle_rad(one),
+    )

@@ -1,0 +1,91 @@
+"""The sections across a fitted axis, with the radius that the depths of each one speak for."""
+
+from dataclasses import dataclass, replace
+
+import numpy as np
+
+from rotrecon.arrays import Cloud, Floats, Indices, freeze
+from rotrecon.axis import Axis, SpaceSections, cut_in_space
+from rotrecon.circles import SectionCircles, SectionState, circumcircles
+from rotrecon.fitting import TO_SIGMA
+from rotrecon.ray_fit import RayFit
+from rotrecon.settings import Settings
+from rotrecon.surfaces import Ball, Surface
+
+INNER = 0.85
+"""Share of the radius within which depths say how far out a section's surface is; farther out they are flattened."""
+ODD_SIGMA = 5.0
+"""Standard deviations of a section's radius beyond which it is odd."""
+ODD_RADIUS = 0.1
+"""Share of the radius within which it is never odd."""
+MEDIAN_LOSS = 1.2533
+"""Standard deviation of a median over that of a mean."""
+
+
+@dataclass(frozen=True, eq=False)
+class SectionRadii:
+    """S sections, their circles about the axis, and the limits of their radii."""
+
+    sections: SpaceSections
+    circles: SectionCircles
+    heights_m: Floats
+    """(S,) along the axis, from its point."""
+    low_m: Floats
+    """(S,) 95 % limits of the radius; NaN where there is none."""
+    high_m: Floats
+
+    def __post_init__(self) -> None:
+        freeze(self)
+
+    def excluding(self, numbers: list[int]) -> "SectionRadii":
+        """The same with sections that the operator took out."""
+        state = self.circles.state.copy()
+        state[numbers] = SectionState.EXCLUDED
+        return replace(self, circles=replace(self.circles, state=state))
+
+
+def section_radii(
+    fit: RayFit, axis: Axis, pixels: Indices, cloud_m: Cloud, count: int, settings: Settings
+) -> SectionRadii:
+    """`count` sections through the pixels (n,) of a cloud (H, W, 3) that agree with a fit."""
+    surface = fit.surface
+    height = axis.along(cloud_m.reshape(-1, 3)[pixels].astype(np.float64))
+    low, high = (float(end) for end in (height.min(), height.max()))
+    margin = max((high - low) / (2 * count), 1e-6)
+    sections = cut_in_space(cloud_m, pixels, axis, (low - margin, high + margin), count)
+    heights = low - margin + (np.arange(count) + 0.5) * sections.pitch_m
+    shape_m = _shape(surface, heights)
+    circles = circumcircles(*sections.base_points(), settings)
+    radius, sigma = _radii(sections, shape_m, fit, settings.minimum_section_pixels)
+    state = circles.state.copy()
+    state[state == SectionState.COLLINEAR] = SectionState.USED
+    state[(state == SectionState.USED) & ~np.isfinite(radius)] = SectionState.TOO_FEW_PIXELS
+    with np.errstate(invalid="ignore"):
+        odd = np.abs(radius - shape_m) > np.maximum(ODD_SIGMA * sigma, ODD_RADIUS * shape_m)
+    state[(state == SectionState.USED) & odd] = SectionState.ODD_RADIUS
+    radius[state == SectionState.EMPTY] = np.nan
+    circles = replace(circles, state=state, radius_m=radius, center_m=axis.point_m + heights[:, None] * axis.direction)
+    return SectionRadii(sections, circles, heights, radius - 1.96 * sigma, radius + 1.96 * sigma)
+
+
+def _shape(surface: Surface, heights_m: Floats) -> Floats:
+    """Radius (S,) of a surface at heights (S,) along its axis."""
+    if isinstance(surface, Ball):
+        return np.sqrt(np.maximum(surface.radius_m**2 - heights_m**2, 0.0))
+    return surface.radius_m + surface.slope * heights_m
+
+
+def _radii(sections: SpaceSections, shape_m: Floats, fit: RayFit, fewest: int) -> tuple[Floats, Floats]:
+    """Median distance (S,) of each section's inner points from the axis, and its standard deviation (S,)."""
+    radius, sigma = np.full(len(shape_m), np.nan), np.full(len(shape_m), np.nan)
+    for number in range(len(shape_m)):
+        place = sections.in_plane(sections.points_in(number).astype(np.float64))
+        place = place[np.abs(place[:, 0]) < INNER * shape_m[number]]
+        if len(place) < fewest:
+            continue
+        distance = np.hypot(place[:, 0], place[:, 1])
+        radius[number] = np.median(distance)
+        spread = np.median(np.abs(distance - radius[number])) * TO_SIGMA
+        independent = max(len(place) * np.sqrt(fit.likeness.independent_share), 1.0)
+        sigma[number] = MEDIAN_LOSS * spread / np.sqrt(independent)
+    return radius, sigma
