@@ -116,11 +116,11 @@ def _shape(found: Foreground) -> _Shape:
 def _axis_line(found: Foreground, camera: PinholeCamera) -> tuple[Floats, Floats, float]:
     """A place (2,) on the axis in the frame, its direction (2,), and the object's width across it, px."""
     shape = _shape(found)
-    hollow_along = runs_along(found, camera) if shape.straight_and_hollow else None
-    if hollow_along is None:
-        turn_rad, shift = _most_symmetric(shape, Mirror.of(found, shape.relief, camera))
-    else:
-        turn_rad, shift = float(np.arctan2(hollow_along[1], hollow_along[0])), 0.0
+    along = runs_along(found, camera) if shape.straight_and_hollow else None
+    if along is not None:
+        (low,), (high,) = shape.span(_across(along[None]))
+        return shape.middle_px, along, float(high - low)
+    turn_rad, shift = _most_symmetric(shape, Mirror.of(found, shape.relief, camera))
     fan = _fan(shape, np.array([turn_rad]), np.array([shift]))
     return fan.places_px[0, 0], fan.along[0], float(fan.width_px[0])
 

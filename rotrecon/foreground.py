@@ -31,7 +31,7 @@ OFF_PLANE = 2.0
 """Times the tolerance a pixel is off a plane to be of an object: between them, ripples of the plane."""
 STEEPEST = 8.0
 """Tangent of the incidence (83 degrees) above which two neighbours are not of one surface."""
-BRIDGED_PX, BRIDGED_SHARE = 11, 0.25
+BRIDGED_PX, BRIDGED_SHARE = 11, 0.2
 """Side of the window whose pixels bridge a hole in depth, and the share of it that they must fill: blobs where nothing
 was matched are as large, and must not cut a thin thing in two."""
 FEWEST_PIXELS = 30
