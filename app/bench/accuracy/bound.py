@@ -40,8 +40,6 @@ class Derivatives:
     """(H, W) the N pixels."""
     of_disparity: Floats
     """(N, P), px per metre, or per unit of slope."""
-    along_m: Floats
-    """(N,) positions of the pixels' points along the axis, from the solid's middle."""
 
     def __post_init__(self) -> None:
         freeze(self)
@@ -57,24 +55,19 @@ def derivatives(pose: Pose) -> Derivatives:
         change = np.zeros(6, dtype=np.complex128)
         change[number] = STEP * 1j
         columns.append(np.imag(FOCAL_BASELINE / near_depth(solid, change, rays)) / STEP)
-    points_m = np.real(near_depth(solid, np.zeros(6), rays))[:, None] * rays
-    return Derivatives(pose.lateral, np.stack(columns, axis=1), (points_m - solid.center_m) @ solid.direction)
+    return Derivatives(pose.lateral, np.stack(columns, axis=1))
 
 
 def cramer_rao(cloud: Cloud, known: Derivatives) -> Bound:
-    """The bound from the object's own pixels that are no outliers, as drawn; noise counts as white.
-
-    The radius of a cone is that at the middle of the pixels.
-    """
-    own = cloud.own[known.pixel]
-    jacobian, along = known.of_disparity[own], known.along_m[own]
+    """The bound from the object's own pixels that are no outliers, as drawn; noise counts as white."""
+    jacobian = known.of_disparity[cloud.own[known.pixel]]
     covariance = cloud.sigma_px**2 * np.asarray(np.linalg.inv(jacobian.T @ jacobian), dtype=np.float64)
     solid = cloud.truth
     if isinstance(solid, Sphere):
         return Bound(_deviation(covariance, [0, 0, 0, 1]) / solid.radius_m, np.nan)
     if solid.half_angle_rad == 0:
         return Bound(_deviation(covariance, [0, 0, 0, 0, 1]) / solid.radius_m, np.nan)
-    middle = float(along.min() + along.max()) / 2
+    middle = float((cloud.place_m - solid.center_m) @ solid.direction)
     half_angle = np.cos(solid.half_angle_rad) ** 2 * _deviation(covariance, [0, 0, 0, 0, 0, 1])
     radius = _deviation(covariance, [0, 0, 0, 0, 1, middle])
     return Bound(radius / float(solid.radius_at(middle)), half_angle / abs(solid.half_angle_rad))

@@ -68,6 +68,8 @@ class Pose:
     """(H, W) which pixels show the object's surface of revolution, its caps left out."""
     from_middle_rad: Floats
     """(H, W) angle round the axis, or the ball, between a pixel's point and the camera; NaN off the object."""
+    along_m: Floats
+    """(H, W) position of a pixel's point along the axis, from the solid's middle; NaN off the object."""
 
     def __post_init__(self) -> None:
         freeze(self)
@@ -91,6 +93,8 @@ class Cloud:
     """(H, W) pixels of the object's surface with a depth, as drawn and between the stroke's ends."""
     own: Bools
     """(H, W) those whose depth is no outlier."""
+    place_m: Floats
+    """(3,) where radii are compared: on the true axis in the middle of those pixels, or the ball's centre."""
     sigma_px: float
     seed: int
     """Of the noise; for whoever draws random samples."""
@@ -102,13 +106,14 @@ class Cloud:
 def pose_of(object_name: str, seed: int, supersampling: int = 0) -> Pose:
     """An object in the pose of a seed; without samples its picture is black, so that depth alone is measured."""
     simulated = simulate(object_name, seed, CAMERA, noise=None, supersampling=supersampling)
-    angle = np.full((CAMERA.height, CAMERA.width), np.nan)
+    angle, along = np.full((2, CAMERA.height, CAMERA.width), np.nan)
     solid, mask = simulated.solid_in_camera, simulated.view.mask
     points = _points(simulated)[mask]
     angle[mask] = _from_middle(solid, points)
+    along[mask] = (points - solid.center_m) @ solid.direction
     lateral = mask.copy()
     lateral[mask] = np.abs(solid.distance(points)) < 1e-6
-    return Pose(simulated, lateral, angle)
+    return Pose(simulated, lateral, angle, along)
 
 
 def cloud_of(pose: Pose, cell: Cell, draw: int = 0) -> Cloud:
@@ -121,16 +126,25 @@ def cloud_of(pose: Pose, cell: Cell, draw: int = 0) -> Cloud:
         depth_m[pose.from_middle_rad > np.radians(cell.arc_deg) / 2] = np.nan
     drawing = perturb(simulated.drawing, hand)
     surface = inside(drawing) & np.isfinite(depth_m) & pose.lateral
+    own = surface & ~outlier
     return Cloud(
         simulated.object_name,
         replace(simulated.frame, points_m=CAMERA.cloud(depth_m), noise=None),
         drawing,
         pose.solid,
         surface,
-        surface & ~outlier,
+        own,
+        _place(pose, own),
         cell.sigma_px,
         key[-1],
     )
+
+
+def _place(pose: Pose, own: Bools) -> Floats:
+    if isinstance(pose.solid, Sphere):
+        return pose.solid.center_m
+    along = pose.along_m[own]
+    return pose.solid.center_m + (along.min() + along.max()) / 2 * pose.solid.direction
 
 
 def inside(drawing: Drawing) -> Bools:

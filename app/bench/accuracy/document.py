@@ -107,8 +107,8 @@ def _introduction(plan: Plan) -> str:
   over {KERNEL_PX} x {KERNEL_PX} px. The whole view has depth. `matched` is the simulator's full model. Each pose is
   drawn and measured {plan.draws} times where noise is correlated, every time with other noise and another drawing.
 - **Drawing**: an ideal operator's, every corner and both ends of the stroke moved by 3 px at random; the kind is not
-  told. Whatever kind the answer has, its radius is compared with the true one; a cone's at the height where the answer
-  has its middle.
+  told. Whatever kind the answer has, its radius is compared with the true one; a cone's in the middle of its pixels,
+  and what its interval is worth where the answer itself has its middle.
 - **Errors** are percent of the true value: bias is their mean, RMS the root of their mean square.
 - **The bound** is Cramer and Rao's: the least standard deviation of an unbiased measurement from the object's own
   pixels between the ends of the stroke that are no outliers, with the axis (2 + 2), the radius and a cone's slope

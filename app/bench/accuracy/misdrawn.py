@@ -9,13 +9,12 @@ import cv2
 import numpy as np
 
 from app.bench.accuracy.clouds import CORRELATED, FULL_MODEL, Cell, cloud_of, pose_of
-from app.bench.accuracy.outcome import TRUE_KINDS
+from app.bench.accuracy.outcome import TRUE_KINDS, radius_at
 from app.bench.accuracy.trials import in_processes
 from rotrecon.arrays import Floats
 from rotrecon.drawing import AreaOfInterest, Drawing, ObjectAxis
 from rotrecon.frame import Frame
 from rotrecon.outcome import FitFailure
-from rotrecon.primitives import Sphere
 from rotrecon.reconstruct import reconstruct
 from rotrecon.settings import Method, Settings
 from rotrecon.simulation.ideal_drawing import MARGIN_PX
@@ -101,11 +100,9 @@ def moved_by_mistakes(
         if isinstance(good, FitFailure) or isinstance(other, FitFailure):
             found[name] = (np.nan, np.nan)
             continue
-        place_m = float((good.solid.center_m - other.solid.center_m) @ other.solid.direction)
-        if isinstance(other.solid, Sphere):
-            place_m = 0.0
-        diameter_m = 2 * float(good.solid.radius_at(0.0))
-        moved_m = abs(2 * float(other.solid.radius_at(place_m)) - diameter_m)
+        place_m = good.solid.center_m
+        diameter_m = 2 * radius_at(good.solid, place_m)
+        moved_m = abs(2 * radius_at(other.solid, place_m) - diameter_m)
         low, high = (np.nan, np.nan) if good.intervals is None else good.intervals.diameter_m
         found[name] = (2 * moved_m / (high - low), moved_m / diameter_m)
     return found

@@ -6,6 +6,7 @@ import numpy as np
 
 from app.bench.accuracy.clouds import Cloud
 from rotrecon.answer import answer
+from rotrecon.arrays import Floats
 from rotrecon.drawing import Drawing
 from rotrecon.outcome import Fit, Range
 from rotrecon.primitives import Primitive, Sphere
@@ -21,11 +22,13 @@ class Outcome:
     """Errors relative to the true values; NaN where there is no such number."""
 
     radius: float = np.nan
-    """Of a cone where the measured solid has its middle."""
+    """At the cloud's place."""
+    stated: float = np.nan
+    """Where the measured solid has its middle: of the diameter that is told."""
     half_angle: float = np.nan
     """Of a cone; that of any other kind counts as 0."""
     radius_interval: Range = (np.nan, np.nan)
-    """95 % interval less the truth, so that it covers the truth where it holds 0."""
+    """95 % interval of the diameter that is told, less the truth: it covers the truth where it holds 0."""
     half_angle_interval: Range = (np.nan, np.nan)
     kind: str | None = None
     """None where it was refused."""
@@ -41,20 +44,21 @@ class Outcome:
 
 def by_program(cloud: Cloud, method: Method, drawing: Drawing | None = None) -> Outcome:
     """What `reconstruct` makes of a cloud, as drawn or with another drawing."""
-    return judged(reconstruct(cloud.frame, drawing or cloud.drawing, Settings(method=method)), cloud.truth)
+    return judged(reconstruct(cloud.frame, drawing or cloud.drawing, Settings(method=method)), cloud)
 
 
-def judged(result: Reconstruction, truth: Primitive) -> Outcome:
-    """A reconstruction beside the truth in camera coordinates."""
+def judged(result: Reconstruction, cloud: Cloud) -> Outcome:
+    """A reconstruction beside the truth."""
     if not isinstance(result.fit, Fit):
         return Outcome(reason=result.fit.reason)
-    solid, said = result.fit.solid, answer(result)
-    true_radius = true_radius_at(truth, solid.center_m)
+    solid, said, truth = result.fit.solid, answer(result), cloud.truth
+    true_radius = radius_at(truth, solid.center_m)
     angle = true_half_angle(truth)
     intervals = result.fit.intervals
     along = float(np.sign(solid.direction @ truth.direction))
     return Outcome(
-        radius=float(solid.radius_at(0.0)) / true_radius - 1,
+        radius=radius_at(solid, cloud.place_m) / radius_at(truth, cloud.place_m) - 1,
+        stated=radius_at(solid, solid.center_m) / true_radius - 1,
         half_angle=along * getattr(solid, "half_angle_rad", 0.0) / angle - 1,
         radius_interval=_relative(intervals and intervals.diameter_m, 2 * true_radius),
         half_angle_interval=_relative(intervals and intervals.half_angle_rad, along * angle),
@@ -63,11 +67,11 @@ def judged(result: Reconstruction, truth: Primitive) -> Outcome:
     )
 
 
-def true_radius_at(truth: Primitive, point_m: np.ndarray) -> float:
-    """The true radius at the height of a point (3,) along the axis."""
-    if isinstance(truth, Sphere):
-        return truth.radius_m
-    return float(truth.radius_at((point_m - truth.center_m) @ truth.direction))
+def radius_at(solid: Primitive, point_m: Floats) -> float:
+    """The radius at the height of a point (3,) along the axis, or the ball's."""
+    if isinstance(solid, Sphere):
+        return solid.radius_m
+    return float(solid.radius_at((point_m - solid.center_m) @ solid.direction))
 
 
 def true_half_angle(truth: Primitive) -> float:

@@ -13,7 +13,7 @@ import numpy as np
 from scipy.optimize import least_squares
 
 from app.bench.accuracy.clouds import FOCAL_BASELINE, Cloud
-from app.bench.accuracy.outcome import Outcome, true_half_angle, true_radius_at
+from app.bench.accuracy.outcome import Outcome, radius_at, true_half_angle
 from rotrecon.arrays import Bools, Floats
 from rotrecon.primitives import Frustum, Primitive, Sphere, basis_across
 
@@ -39,7 +39,7 @@ def orthogonal_least_squares(cloud: Cloud) -> Outcome:
         return _changed(truth, change)
 
     found = least_squares(lambda change: solid(change).distance(points), np.zeros(count), x_scale="jac")
-    return _outcome(solid(found.x), points, truth)
+    return _outcome(solid(found.x), cloud)
 
 
 def pyransac3d(cloud: Cloud) -> Outcome | None:
@@ -73,7 +73,7 @@ def scikit_image(cloud: Cloud) -> Outcome | None:
         radii[number] = _circle_radius(across[within], cloud)
     slope, at_zero = np.polyfit(heights, radii, 1)
     cone = Frustum("cone", truth.center_m, truth.direction, truth.length_m, float(at_zero), float(np.arctan(slope)))
-    return _outcome(cone, points, truth)
+    return _outcome(cone, cloud)
 
 
 def meshlib(cloud: Cloud) -> Outcome:
@@ -89,9 +89,8 @@ def meshlib(cloud: Cloud) -> Outcome:
         return Outcome(radius=package.CylinderObject(vector).getRadius() / truth.radius_m - 1, kind=truth.kind)
     found = package.ConeObject(vector)
     apex, direction, half_angle = _vector(found.getCenter()), _vector(found.getDirection()), float(found.getAngle())
-    middle = truth.center_m + _middle(points, truth) * truth.direction
-    radius = float((middle - apex) @ direction) * float(np.tan(half_angle))
-    relative = radius / true_radius_at(truth, middle) - 1
+    radius = float((cloud.place_m - apex) @ direction) * float(np.tan(half_angle))
+    relative = radius / radius_at(truth, cloud.place_m) - 1
     return Outcome(radius=relative, half_angle=half_angle / true_half_angle(truth) - 1, kind=truth.kind)
 
 
@@ -140,22 +139,14 @@ def _changed(truth: Primitive, change: Floats) -> Primitive:
     )
 
 
-def _outcome(solid: Primitive, points: Floats, truth: Primitive) -> Outcome:
-    """A solid of the same kind beside the truth, in the middle of the points."""
-    if isinstance(solid, Sphere):
-        return Outcome(radius=solid.radius_m / truth.radius_m - 1, kind=solid.kind)
-    middle = truth.center_m + _middle(points, truth) * truth.direction
-    radius = float(solid.radius_at((middle - solid.center_m) @ solid.direction))
-    return Outcome(
-        radius=radius / true_radius_at(truth, middle) - 1,
-        half_angle=solid.half_angle_rad / true_half_angle(truth) - 1,
-        kind=solid.kind,
-    )
+def _outcome(solid: Primitive, cloud: Cloud) -> Outcome:
+    """A solid of the same kind beside the truth."""
+    radius = radius_at(solid, cloud.place_m) / radius_at(cloud.truth, cloud.place_m) - 1
+    return Outcome(radius, half_angle=_half_angle(solid) / true_half_angle(cloud.truth) - 1, kind=solid.kind)
 
 
-def _middle(points: Floats, truth: Primitive) -> float:
-    along = (points - truth.center_m) @ truth.direction
-    return float(along.min() + along.max()) / 2
+def _half_angle(solid: Primitive) -> float:
+    return np.nan if isinstance(solid, Sphere) else solid.half_angle_rad
 
 
 def _points(cloud: Cloud, chosen: Bools) -> Floats:

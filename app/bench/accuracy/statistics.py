@@ -78,7 +78,8 @@ def half_angles(outcomes: Sequence[Outcome]) -> Floats:
 
 def radius_coverage(outcomes: Sequence[Outcome]) -> Coverage:
     """Of the diameter's intervals."""
-    return coverage(radii(outcomes), np.array([outcome.radius_interval for outcome in outcomes]))
+    stated = np.array([outcome.stated for outcome in outcomes])
+    return coverage(stated, np.array([outcome.radius_interval for outcome in outcomes]))
 
 
 def half_angle_coverage(outcomes: Sequence[Outcome]) -> Coverage:

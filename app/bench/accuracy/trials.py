@@ -133,8 +133,16 @@ def _pose_trials(plan: Plan, task: tuple[str, int]) -> list[Trial]:
                 methods |= plan.others(cell, seed)
             for method, measure in methods.items():
                 begun = time.perf_counter()
-                outcome = measure(cloud)
+                outcome = _outlasting(measure, cloud)
                 milliseconds = 1000 * (time.perf_counter() - begun)
                 if outcome is not None:
                     found.append(Trial(name, cell, method, seed, draw, outcome, bound, milliseconds))
     return found
+
+
+def _outlasting(measure: Callable[[Cloud], Outcome | None], cloud: Cloud) -> Outcome | None:
+    """What was measured; one that breaks off has refused, and the other clouds are measured all the same."""
+    try:
+        return measure(cloud)
+    except Exception as error:
+        return Outcome(reason=f"{type(error).__name__}: {error}")
