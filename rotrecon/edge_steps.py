@@ -16,13 +16,19 @@ from rotrecon.arrays import Bools, Floats, freeze
 from rotrecon.edge_lines import Line, Stretch, bell, filtered
 
 CLEAR_PX = 2.0
-"""Distance from the edge where a colour is one side's alone, however blurred the picture."""
+"""Distance from the edge where a colour is one side's alone, in pictures that are not blurred."""
+CLEAR_BLURS = 2.5
+"""The same in pictures that are, in standard deviations of the blur: 1 % of the other side is left."""
+LEAST_ZONE_PX = 1.0
+"""Least width of a zone where a colour is one side's alone: with less, there is no telling how it changes."""
 LEVEL_PX = 15.0
 """Standard deviation of the average along the outline that is a side's level there."""
 PLACES_PX = np.arange(-1.25, 1.26, 0.25)
 """Where the step is tried, from a line that is right to half a pixel; likelihoods are parabolas over a quarter."""
-BLURS_PX = np.array([0.3, 0.45, 0.675, 1.0125, 1.51875])
-"""Standard deviations of the blur that are tried: a pixel's own area is 0.3 to 0.4, a camera's picture up to 1.5."""
+NO_STEP_PX = np.array([-100.0, 100.0])
+"""Places beyond any profile: all that is seen is the background, or the object."""
+BLURS_PX = np.array([0.3, 0.42, 0.6, 0.85, 1.2])
+"""Standard deviations of the blur that are tried: a pixel's own area is 0.3 to 0.4, a recorded picture's about 1."""
 BLUR_ROWS = 3
 """Every so many profiles are enough to find the blur."""
 NOISE = 0.005
@@ -39,8 +45,10 @@ BEND_PRIOR = 0.05
 """Weight of no bend against all steps."""
 CORRELATED_PX = 10.0
 """Distance along the outline within which steps err together: the average over likelihoods, and the texture's grain."""
-SYSTEMATIC_PX = 0.03
-"""What does not average out on rendered pictures: shading that is not linear, and the shape of the blur."""
+SYSTEMATIC_SHARE = 0.1
+"""Of the blur: what does not average out on rendered pictures, as shading is not linear, and blur no Gaussian."""
+LARGEST_ERROR_PX = 1.25
+"""Of a single step, by its likelihood: with more, it may be anywhere among the places tried."""
 CAUTION = 1.5
 """Factor on the scatter: that of three colours, and of a texture which may run all along the outline."""
 
@@ -114,8 +122,10 @@ class _Model:
 
 def find_steps(stretches: Sequence[Profiles]) -> list[Steps]:
     """The steps on all sides of one object, which share the blur of the picture."""
-    models = [_model(profiles) for profiles in stretches]
+    models = [_model(profiles, CLEAR_PX) for profiles in stretches]
     blur_px = _blur(models)
+    if CLEAR_BLURS * blur_px > CLEAR_PX:
+        models = [_model(profiles, CLEAR_BLURS * blur_px) for profiles in stretches]
     return [_steps(profiles, model, blur_px) for profiles, model in zip(stretches, models, strict=True)]
 
 
@@ -124,11 +134,12 @@ def _covered(distance: Floats) -> Floats:
     return np.array([0.5 + 0.5 * erf(value / sqrt(2)) for value in distance.ravel()]).reshape(distance.shape)
 
 
-def _model(profiles: Profiles) -> _Model:
+def _model(profiles: Profiles, clear_px: float) -> _Model:
     across, light = profiles.across_px, profiles.light
+    clear = min(clear_px, -float(across[0]) - LEAST_ZONE_PX)
     along_rows = LEVEL_PX / profiles.stretch.spacing_px
-    inner_level, inner_texture = _level(across, light, across <= -CLEAR_PX, along_rows)
-    outer_level, outer_texture = _level(across, light, across >= CLEAR_PX, along_rows)
+    inner_level, inner_texture = _level(across, light, across <= -clear, along_rows)
+    outer_level, outer_texture = _level(across, light, across >= clear, along_rows)
     # the channels in which both textures are uncorrelated
     whiten = np.linalg.inv(np.linalg.cholesky(_covariance(outer_texture)))
     ratio, turn = np.linalg.eigh(whiten @ _covariance(inner_texture) @ whiten.T)
@@ -188,15 +199,20 @@ def _vertex(before: Floats, here: Floats, after: Floats) -> tuple[Floats, Floats
 
 
 def _steps(profiles: Profiles, model: _Model, blur_px: float) -> Steps:
-    by_channel = model.log_likelihood(PLACES_PX, np.full(len(PLACES_PX), blur_px))
+    places = np.concatenate([PLACES_PX, NO_STEP_PX])
+    by_channel = model.log_likelihood(places, np.full(len(places), blur_px))
     spacing = profiles.stretch.spacing_px
-    likely = filtered(by_channel.sum(axis=1).T, bell(ALONG_PX / spacing))
+    alone, without = np.split(by_channel.sum(axis=1).T, [len(PLACES_PX)], axis=1)
+    along = bell(ALONG_PX / spacing)
+    likely = filtered(alone, along)
+    # counted, not added up: a profile that is sure of its step must not outvote its neighbours
+    stepped = filtered((alone.max(axis=1) > without.max(axis=1)).astype(np.float64)[:, None], along)[:, 0]
     top, rows = likely[:, 1:-1].argmax(axis=1) + 1, np.arange(len(likely))
     before, here, after = (likely[rows, top + side] for side in (-1, 0, 1))
     apart = float(PLACES_PX[1] - PLACES_PX[0])
     away, curvature = _vertex(before, here, after)
     place, weight = PLACES_PX[top] + apart * away, curvature / apart**2
-    found = (here >= before) & (here >= after)
+    found = (here >= before) & (here >= after) & (weight > LARGEST_ERROR_PX**-2) & (stepped > 0.5)
     line = _line(profiles.stretch.shapes(), place, weight * found)
     found &= np.abs(place - line) < OFF_PX
     if not found.any():
@@ -205,7 +221,7 @@ def _steps(profiles: Profiles, model: _Model, blur_px: float) -> Steps:
     total = float(weight[found].sum())
     scatter = _scatter(np.where(found, weight * (place - line), 0.0), round(CORRELATED_PX / spacing)) / total**2
     scatter += _disagreement(by_channel[:, :, found], line[found])
-    sigma = float(np.sqrt(SYSTEMATIC_PX**2 + CAUTION**2 * scatter))
+    sigma = float(np.sqrt((SYSTEMATIC_SHARE * blur_px) ** 2 + CAUTION**2 * scatter))
     offset = np.where(found, profiles.line.offset_px + place, np.nan)
     return Steps(offset, sigma * np.sqrt(total / weight), model.contrast, sigma, blur_px)
 

@@ -19,11 +19,11 @@ LEAST_HALF_WIDTH_PX = 3.5
 """Of an object that has a colour of its own between its edges."""
 LEAST_POINTS = 12
 """Fewer points say too little of what is a line and what a texture."""
-LEAST_SUPPORT = 0.4
-"""Of a line to be trusted: lines through texture alone were seen to have up to that."""
+LEAST_SUPPORT = 0.45
+"""Of a line to be trusted: half the lines through texture alone have less."""
 RUNNER_UP_SHARE = 0.75
 """Of the support, what a second line may have beside one that is trusted."""
-LEAST_FOUND = 0.5
+LEAST_FOUND = 0.6
 """Share of the points with an edge on a line to be trusted."""
 LARGEST_SIGMA_PX = 0.5
 """Of a line to be trusted: more says nothing that depth does not know."""

@@ -1,0 +1,274 @@
+"""The outline in the picture: laws on drawn steps whose place is known, and one rendered object."""
+
+import numpy as np
+import pytest
+from hypothesis import given, settings
+from hypothesis import strategies as st
+
+from rotrecon.camera import PinholeCamera
+from rotrecon.edge_steps import CLEAR_PX
+from rotrecon.edges import LEAST_HALF_WIDTH_PX, Edges, find_edges
+from rotrecon.simulation.ideal_drawing import outline_px
+from rotrecon.simulation.simulate import simulate
+
+SIZE = 140
+MIDDLE = np.array([69.3, 70.8])
+LENGTH = 60
+REACH_PX = 6.0
+WOOD, WALL = (0.35, 0.18, 0.08), (0.25, 0.27, 0.28)
+DARK, LIGHT = (0.02, 0.02, 0.03), (0.7, 0.7, 0.65)
+
+
+def covered(distance_px, blur_px):
+    """Share of a blurred pixel inside an edge, at signed distances outside it."""
+    edges = np.linspace(-8, 8, 3201)
+    bell = np.exp(-0.5 * edges**2)
+    return 1 - np.interp(distance_px / blur_px, edges, np.cumsum(bell) / bell.sum())
+
+
+def encoded(light):
+    """Display values of linear light."""
+    light = np.clip(light, 0, 1)
+    srgb = np.where(light <= 0.0031308, 12.92 * light, 1.055 * np.maximum(light, 1e-6) ** (1 / 2.4) - 0.055)
+    return np.rint(255 * srgb).astype(np.uint8)
+
+
+def across_of(angle):
+    return np.array([-np.sin(angle), np.cos(angle)])
+
+
+def distances(angle):
+    """Signed distance of every pixel from a line through the middle."""
+    v, u = np.indices((SIZE, SIZE), dtype=np.float64)
+    return (np.stack([u, v], axis=-1) - MIDDLE) @ across_of(angle)
+
+
+def strip(angle, half_width, inner, outer, blur=0.5):
+    """A straight object of one colour before a background of another, in linear light."""
+    inside = covered(np.abs(distances(angle)) - half_width, blur)[..., None]
+    return inside * np.array(inner) + (1 - inside) * np.array(outer)
+
+
+def sides_of(angle, half_width, shift=0.0, tilt=0.0):
+    """Predicted points and normals of the two sides of a strip, each displaced and turned; and their numbers."""
+    along = np.array([np.cos(angle), np.sin(angle)])
+    steps = np.arange(LENGTH) - (LENGTH - 1) / 2
+    point, normal = [], []
+    for sign in (1.0, -1.0):
+        turned = along + sign * np.tan(tilt) * across_of(angle)
+        point.append(MIDDLE + sign * (half_width + shift) * across_of(angle) + steps[:, None] * turned)
+        normal.append(np.tile(sign * across_of(angle), (LENGTH, 1)))
+    return np.concatenate(point), np.concatenate(normal), np.repeat([0, 1], LENGTH)
+
+
+def found_on(image, angle, half_width, shift=0.0, tilt=0.0) -> Edges:
+    point, normal, side = sides_of(angle, half_width, shift, tilt)
+    return find_edges(image, point, normal, REACH_PX, half_width, side)
+
+
+def mean_of(edges: Edges, rows) -> float:
+    offset, sigma = edges.offset_px[rows], edges.sigma_px[rows]
+    seen = np.isfinite(offset)
+    return float(np.average(offset[seen], weights=sigma[seen] ** -2))
+
+
+def texture(seed, grain, colours=3):
+    """Smooth noise of standard deviation 1, (SIZE, SIZE, colours)."""
+    noise = np.random.default_rng(seed).standard_normal((SIZE, SIZE, colours))
+    frequency = np.fft.fftfreq(SIZE)
+    low_pass = np.exp(-2 * (np.pi * grain) ** 2 * (frequency[:, None] ** 2 + frequency**2))
+    smooth = np.fft.ifft2(np.fft.fft2(noise, axes=(0, 1)) * low_pass[..., None], axes=(0, 1)).real
+    return smooth / smooth.std()
+
+
+@settings(max_examples=30, deadline=None)
+@given(
+    angle=st.floats(0, np.pi),
+    half_width=st.floats(6.0, 30.0),
+    shift=st.floats(-3.0, 3.0),
+    tilt_deg=st.floats(-1.5, 1.5),
+    blur=st.floats(0.4, 0.9),
+    colours=st.sampled_from([(WOOD, WALL), (WALL, WOOD), (DARK, LIGHT), (LIGHT, DARK), (LIGHT, WALL)]),
+)
+def test_a_step_is_found_wherever_it_is(angle, half_width, shift, tilt_deg, blur, colours):
+    tilt = np.deg2rad(tilt_deg)
+    edges = found_on(encoded(strip(angle, half_width, *colours, blur)), angle, half_width, shift, tilt)
+    true = -shift - np.tile((np.arange(LENGTH) - (LENGTH - 1) / 2) * np.tan(tilt), 2)
+    assert all(side.trusted for side in edges.sides)
+    assert np.abs(edges.offset_px - true).max() < 0.05
+    assert all(side.sigma_px < 0.15 for side in edges.sides)
+
+
+def test_colours_of_equal_grey_make_an_edge():
+    green = (0.1, 0.5, 0.1)
+    red = (0.1 + (0.7152 / 0.2126) * 0.1, 0.4, 0.1)
+    edges = found_on(encoded(strip(0.4, 15, green, red)), 0.4, 15, shift=1.7)
+    assert all(side.trusted for side in edges.sides)
+    assert np.abs(edges.offset_px + 1.7).max() < 0.05
+
+
+@pytest.mark.parametrize("name", ["blur", "prediction", "quarter turn", "whole pixels"])
+def test_what_must_not_matter(name):
+    angle, half_width, grain = 0.7, 14.0, 2.0
+    light = strip(angle, half_width, WOOD, WALL) * (1 + 0.1 * texture(3, grain))
+    image = encoded(light)
+    point, normal, side = sides_of(angle, half_width, shift=1.0)
+    before = find_edges(image, point, normal, REACH_PX, half_width, side).offset_px
+    if name == "prediction":
+        moved = find_edges(image, point + 0.6 * normal, normal, REACH_PX, half_width, side).offset_px + 0.6
+        np.testing.assert_allclose(moved, before, atol=0.05)
+    elif name == "quarter turn":
+        turned = np.ascontiguousarray(np.rot90(image))  # (u, v) goes to (v, SIZE - 1 - u)
+        point = np.stack([point[:, 1], SIZE - 1 - point[:, 0]], axis=1)
+        normal = np.stack([normal[:, 1], -normal[:, 0]], axis=1)
+        after = find_edges(turned, point, normal, REACH_PX, half_width, side).offset_px
+        np.testing.assert_allclose(after, before, atol=1e-4)
+    elif name == "whole pixels":
+        larger = np.pad(image, ((7, 0), (11, 0), (0, 0)), mode="edge")
+        moved = find_edges(larger, point + np.array([11, 7]), normal, REACH_PX, half_width, side).offset_px
+        np.testing.assert_allclose(moved, before, atol=1e-6)
+    else:
+        blurred = encoded(strip(angle, half_width, WOOD, WALL, 1.0) * (1 + 0.1 * texture(3, grain)))
+        after = find_edges(blurred, point, normal, REACH_PX, half_width, side).offset_px
+        assert abs(np.nanmean(after) - np.nanmean(before)) < 0.05
+
+
+def test_shading_toward_the_limb_moves_nothing():
+    inside = np.maximum(14 - np.abs(distances(0.3)), 0)[..., None]
+    shaded = strip(0.3, 14, (0.3, 0.25, 0.2), (0.02, 0.02, 0.02))
+    image = encoded(shaded * (0.6 + 0.05 * inside))
+    assert np.abs(found_on(image, 0.3, 14, shift=1.0).offset_px + 1.0).max() < 0.1
+
+
+@pytest.mark.parametrize("seed", range(4))
+def test_texture_on_either_side_is_no_edge_and_the_error_is_as_stated(seed):
+    angle, half_width = 0.4 + seed, 15.0
+    inner, outer = (1 + 0.15 * texture(seed + offset, 2.0, 1) for offset in (10, 20))
+    inside = covered(np.abs(distances(angle)) - half_width, 0.5)[..., None]
+    light = inside * inner * np.array(WOOD) + (1 - inside) * outer * np.array(WALL)
+    edges = found_on(encoded(light), angle, half_width, shift=-2.0)
+    for number, side in enumerate(edges.sides):
+        rows = np.arange(LENGTH) + number * LENGTH
+        assert side.trusted
+        error = mean_of(edges, rows) - 2.0
+        assert abs(error) < 0.12
+        assert abs(error) < 3 * side.sigma_px
+        together = np.nansum(edges.sigma_px[rows] ** -2.0) ** -0.5
+        assert together == pytest.approx(side.sigma_px, rel=0.01)
+
+
+def test_nothing_is_found_where_there_is_nothing():
+    edges = found_on(np.full((SIZE, SIZE, 3), 90, dtype=np.uint8), 0.5, 15)
+    assert np.isnan(edges.offset_px).all()
+    assert not any(side.trusted for side in edges.sides)
+
+
+@pytest.mark.parametrize("grain", [0.0, 1.0, 3.0, 6.0])
+def test_texture_alone_is_not_trusted(grain):
+    trusted = [
+        side.trusted
+        for seed in range(8)
+        for side in found_on(encoded(0.3 * (1 + 0.25 * texture(seed, grain))), 0.5, 15).sides
+    ]
+    assert sum(trusted) <= 1, "16 sides that are not there"
+
+
+def test_a_print_that_runs_along_the_inside_is_not_the_outline():
+    light = strip(0.5, 16, WOOD, WALL)
+    light[np.abs(np.abs(distances(0.5)) - 11) < 1.0] = (0.30, 0.17, 0.09)
+    edges = found_on(encoded(light), 0.5, 16)
+    assert all(side.trusted for side in edges.sides)
+    assert np.abs(edges.offset_px).max() < 0.05
+
+
+def test_two_lines_of_like_strength_are_told_and_not_trusted():
+    light = strip(0.5, 16, WOOD, WALL)
+    beside = (np.abs(distances(0.5)) > 16) & (np.abs(distances(0.5)) < 19.5)
+    light[beside] = (0.10, 0.10, 0.11)
+    for side in found_on(encoded(light), 0.5, 16).sides:
+        assert side.runner_up > 0.5
+        assert not side.trusted
+
+
+def test_what_hides_a_part_of_a_side_is_left_out():
+    light = strip(0.0, 15, WOOD, WALL)
+    light[70:100, 40:60] = WOOD
+    edges = found_on(encoded(light), 0.0, 15, shift=1.0)
+    column = np.where(np.arange(2 * LENGTH) < LENGTH, sides_of(0.0, 15)[0][:, 0], np.inf)
+    assert np.isnan(edges.offset_px[(column > 43) & (column < 56)]).all()
+    beside = (column < 36) | (column > 63)
+    assert np.abs(edges.offset_px[beside] + 1.0).max() < 0.1
+    assert edges.sides[0].found < edges.sides[1].found == 1.0
+    assert all(side.trusted for side in edges.sides)
+
+
+@pytest.mark.parametrize("radius", [12.0, 40.0])
+def test_a_round_outline_is_moved_and_grown_in_one_piece(radius):
+    v, u = np.indices((SIZE, SIZE), dtype=np.float64)
+    inside = covered(np.hypot(u - MIDDLE[0], v - MIDDLE[1]) - radius, 0.5)[..., None]
+    image = encoded(inside * np.array(WOOD) + (1 - inside) * np.array(WALL))
+    angle = np.linspace(0, 2 * np.pi, round(2 * np.pi * radius), endpoint=False)
+    normal = np.stack([np.cos(angle), np.sin(angle)], axis=1)
+    moved = np.array([1.4, -0.9])
+    point = MIDDLE + moved + (radius - 1.2) * normal
+    edges = find_edges(image, point, normal, REACH_PX, radius)
+    to_centre = point - MIDDLE
+    ahead = (to_centre * normal).sum(axis=1)
+    true = -ahead + np.sqrt(ahead**2 - (to_centre**2).sum(axis=1) + radius**2)
+    assert edges.sides[0].trusted
+    assert np.nanmax(np.abs(edges.offset_px - true)) < 0.1
+    assert edges.sides[0].found > 0.95
+
+
+def test_points_at_the_border_and_objects_too_thin_have_no_edge():
+    image = encoded(strip(0.0, 15, WOOD, WALL))
+    point, normal, side = sides_of(0.0, 15)
+    outside = find_edges(image, point - [0, 75], normal, REACH_PX, 15, side)
+    assert np.isnan(outside.offset_px).all()
+    assert not any(verdict.trusted for verdict in outside.sides)
+    thin = find_edges(image, point, normal, REACH_PX, LEAST_HALF_WIDTH_PX - 0.1, side)
+    assert np.isnan(thin.offset_px).all()
+    assert LEAST_HALF_WIDTH_PX > CLEAR_PX
+
+
+def test_sides_come_in_the_order_of_their_numbers():
+    image = encoded(strip(0.0, 15, WOOD, WALL))
+    image[:70] = 90
+    point, normal, side = sides_of(0.0, 15)
+    below, above = find_edges(image, point, normal, REACH_PX, 15, side).sides
+    assert below.trusted
+    assert not above.trusted
+    swapped = find_edges(image, point, normal, REACH_PX, 15, 5 - side).sides
+    assert swapped == (above, below)
+
+
+def test_callers_mistakes_raise():
+    image = np.zeros((SIZE, SIZE, 3), dtype=np.uint8)
+    point, normal, side = sides_of(0.0, 15)
+    with pytest.raises(ValueError, match="points and normals"):
+        find_edges(image, point, normal[:5], REACH_PX, 15, side)
+    with pytest.raises(ValueError, match="points and normals"):
+        find_edges(image, point, normal, REACH_PX, 15, side[:5])
+    with pytest.raises(ValueError, match="reach"):
+        find_edges(image, point, normal, 0.0, 15, side)
+
+
+def test_the_sides_of_a_rendered_object():
+    camera = PinholeCamera(320, 240, np.array([[420.0, 0, 159.5], [0, 420.0, 119.5], [0, 0, 1]]))
+    scene = simulate("cone", 4, camera, noise=None, supersampling=4)
+    corners = outline_px(scene.solid_in_camera, camera)
+    ends = np.stack([corners, np.roll(corners, -1, axis=0)], axis=1)
+    limbs = ends[np.argsort(np.linalg.norm(ends[:, 1] - ends[:, 0], axis=1))[-2:]]
+    middle = limbs.mean(axis=(0, 1))
+    errors = []
+    for start, end in limbs:
+        along = (end - start) / np.linalg.norm(end - start)
+        normal = np.array([-along[1], along[0]])
+        normal *= np.sign(normal @ (start - middle))
+        share = np.linspace(0.08, 0.92, 60)
+        point = start + share[:, None] * (end - start)
+        half_width = abs(normal @ (start - middle))
+        edges = find_edges(scene.frame.image, point + 2.5 * normal, np.tile(normal, (60, 1)), REACH_PX, half_width)
+        assert edges.sides[0].trusted
+        errors.append(mean_of(edges, np.arange(60)) + 2.5)
+    assert np.abs(errors).max() < 0.1
