@@ -26,12 +26,11 @@ from app.bench.accuracy.misdrawn import AREA_TWICE, MISTAKES, misdrawn, width_px
 from app.bench.accuracy.outcome import TRUE_KINDS, Outcome
 from app.bench.accuracy.size_tables import CORRELATED_RMS, bound_of, quantities, rms_of
 from app.bench.accuracy.statistics import coverage, errors, far_off_count, radius_coverage, refused_share
-from app.bench.accuracy.trials import Found, Plan, trials
+from app.bench.accuracy.trials import METHOD, Found, Plan, trials
 from rotrecon.primitives import Frustum, Sphere
 from rotrecon.settings import Settings
 from rotrecon.simulation.raycast import first_hit
 
-METHOD = "robust"
 KNOWN = Settings().method == METHOD
 """Until it is what everybody gets, its accuracy is nobody's."""
 POSES, FULL_POSES = 20, 8

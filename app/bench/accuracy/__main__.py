@@ -21,7 +21,7 @@ from app.bench.accuracy.statistics import (
     refused_share,
     rms_percent,
 )
-from app.bench.accuracy.trials import Plan, Trial, trials
+from app.bench.accuracy.trials import METHOD, Plan, Trial, trials
 from app.bench.table import table
 from rotrecon.arrays import Floats
 from rotrecon.settings import Settings
@@ -36,7 +36,7 @@ def main(
     poses: Annotated[int, typer.Option(help="Of each object.")] = 20,
     object_: Annotated[str, typer.Option("--object", help="One of the simulated objects; all if left out.")] = "",
     cell: Annotated[str, typer.Option(help="Part of a cell's name, such as `white 0.25`, `box` or `matched`.")] = "",
-    method: Annotated[str, typer.Option(help="paper or robust.")] = Settings().method,
+    method: Annotated[str, typer.Option(help="paper or robust.")] = METHOD,
     seed: Annotated[int, typer.Option(help="Of the first pose.")] = 0,
     processes: Annotated[int, typer.Option(help="That share the work.")] = 1,
     worst: Annotated[bool, typer.Option(help="Name each cell's worst seeds, and why others were refused.")] = False,
@@ -47,7 +47,7 @@ def main(
         poses,
         seed,
         draws=1,
-        cells=tuple(c for c in Plan(Settings().method).cells if cell in c.name),
+        cells=tuple(c for c in Plan().cells if cell in c.name),
         objects=(object_,) if object_ else tuple(TRUE_KINDS),
         compared=False,
         supersampling=1,

@@ -104,7 +104,7 @@ class Cloud:
 
 
 def pose_of(object_name: str, seed: int, supersampling: int = 0) -> Pose:
-    """An object in the pose of a seed; without samples its picture is black, so that depth alone is measured."""
+    """An object in the pose of a seed; its picture, which only the full model shows, is black without samples."""
     simulated = simulate(object_name, seed, CAMERA, noise=None, supersampling=supersampling)
     angle, along = np.full((2, CAMERA.height, CAMERA.width), np.nan)
     solid, mask = simulated.solid_in_camera, simulated.view.mask
@@ -117,7 +117,10 @@ def pose_of(object_name: str, seed: int, supersampling: int = 0) -> Pose:
 
 
 def cloud_of(pose: Pose, cell: Cell, draw: int = 0) -> Cloud:
-    """The pose with the errors of a cell and an unsteady hand's drawing; another `draw`, another noise."""
+    """The pose with the errors of a cell and an unsteady hand's drawing; another `draw`, another noise.
+
+    But for the full model its picture is black, so that depth alone is measured.
+    """
     simulated = pose.simulated
     key = [simulated.seed, draw, zlib.crc32(f"{simulated.object_name} {cell.name}".encode())]
     noise, hand = np.random.default_rng(key).spawn(2)
@@ -125,11 +128,12 @@ def cloud_of(pose: Pose, cell: Cell, draw: int = 0) -> Cloud:
     if cell.arc_deg is not None:
         depth_m[pose.from_middle_rad > np.radians(cell.arc_deg) / 2] = np.nan
     drawing = perturb(simulated.drawing, hand)
+    image = simulated.frame.image if cell.noise == "matched" else np.zeros_like(simulated.frame.image)
     surface = inside(drawing) & np.isfinite(depth_m) & pose.lateral
     own = surface & ~outlier
     return Cloud(
         simulated.object_name,
-        replace(simulated.frame, points_m=CAMERA.cloud(depth_m), noise=None),
+        replace(simulated.frame, image=image, points_m=CAMERA.cloud(depth_m), noise=None),
         drawing,
         pose.solid,
         surface,

@@ -25,7 +25,6 @@ from app.bench.accuracy.size_tables import (
 from app.bench.accuracy.timings import RUNS, timing_table
 from app.bench.accuracy.trials import Found, Plan, trials
 from app.bench.table import wrapped
-from rotrecon.settings import Settings
 from rotrecon.simulation.simulate import DISTANCE_M, OBJECTS, TILT_RAD
 
 
@@ -33,7 +32,7 @@ from rotrecon.simulation.simulate import DISTANCE_M, OBJECTS, TILT_RAD
 class Extent:
     """How much is measured."""
 
-    plan: Plan = field(default_factory=lambda: Plan(Settings().method))
+    plan: Plan = field(default_factory=Plan)
     misdrawn_poses: int = MISDRAWN_POSES
     runs: int = RUNS
     processes: int | None = None

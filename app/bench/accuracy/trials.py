@@ -22,6 +22,8 @@ POSES = 200
 """Of each object."""
 DRAWS = 3
 """Noises and drawings of each pose where noise is correlated: intervals of 600 clouds."""
+METHOD: Method = "robust"
+"""The one whose accuracy is asked for."""
 PEER_POSES = 20
 """The packages of others take up to 3 s a cloud."""
 PEER_CELLS = (WHITE[0], WHITE[4], CORRELATED[0])
@@ -67,8 +69,8 @@ class Found:
 class Plan:
     """How much is measured."""
 
-    method: Method
-    """The one whose accuracy is asked for; the paper's and the others stand beside it."""
+    method: Method = METHOD
+    """The paper's and the others stand beside it."""
     poses: int = POSES
     first_seed: int = 0
     draws: int = DRAWS
@@ -121,10 +123,9 @@ def in_processes(work: Callable[[Task], Result], tasks: Sequence[Task], processe
 def _pose_trials(plan: Plan, task: tuple[str, int]) -> list[Trial]:
     """All cells of one pose."""
     name, seed = task
-    black, found = pose_of(name, seed), list[Trial]()
-    known = derivatives(black)
+    pose = pose_of(name, seed, plan.supersampling if FULL_MODEL in plan.cells else 0)
+    known, found = derivatives(pose), list[Trial]()
     for cell in plan.cells:
-        pose = pose_of(name, seed, plan.supersampling) if cell == FULL_MODEL else black
         for draw in range(plan.draws_of(cell)):
             cloud = cloud_of(pose, cell, draw)
             bound = cramer_rao(cloud, known)
