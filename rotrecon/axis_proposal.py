@@ -24,15 +24,15 @@ STRAIGHT, LONG = 0.5, 0.5
 """What a stroke across the curved or the short side costs: as much as half of the pixels not being symmetric."""
 HOLLOW_BEND = 0.5
 """Largest bend along a straight hollow surface over that across it."""
-TURN_RAD, SHIFT = float(np.deg2rad(7.5)), 0.05
-TURNS_RAD: Floats = TURN_RAD * np.arange(24.0)
+TURN_RAD, SHIFT = float(np.deg2rad(5.0)), 0.05
+TURNS_RAD: Floats = TURN_RAD * np.arange(36.0)
 """Directions first tried, off the long side's: without that one long things would be met at none."""
-SHIFTS: Floats = SHIFT * np.array([0.0, -1.0, 1.0, -2.0, 2.0, -3.0, 3.0])
+SHIFTS: Floats = SHIFT * np.array([0.0, -1.0, 1.0, -2.0, 2.0])
 """Places first tried, in widths beside the middle; where nothing speaks for another, the middle is taken."""
 NEARBY = np.array([0.0, -0.5, 0.5, -1.0, 1.0])
 """Turns and shifts tried round the best, in steps that are halved every time."""
 HALVINGS = 4
-"""From 7.5 degrees and 5 % of the width to a quarter of a degree and 0.2 %."""
+"""From 5 degrees and 5 % of the width to a third of a degree and 0.3 %."""
 MIDDLE_SHARE = 0.15
 """Share of the width, to each side of the stroke, in which its ends are looked for."""
 

@@ -23,8 +23,9 @@ ON_PLANE_SIGMA = 4.0
 """Standard deviations within which a pixel lies on a plane: one in 16,000 of a table's does not."""
 ON_PLANE_SHARE = 0.004
 """Share of the depth within which a pixel lies on a plane, though noise be less: depth cameras bend a table by that."""
-PLANE_SHARE = 0.25
-"""Share of the surroundings that lies on a plane that is one: an object that reaches out of the area has less."""
+PLANE_SHARE, PLANE_COVER = 0.25, 0.1
+"""Share of what is known round the area, and of all that is round it, that lies on a plane that is one: the side of an
+object that reaches out of the area has less."""
 MOST_PLANES = 3
 """A table, a wall and another wall."""
 OFF_PLANE = 2.0
@@ -99,7 +100,7 @@ def find_foreground(frame: Frame, area: AreaOfInterest) -> Foreground | FitFailu
     pixels = patch.frame_px(places_of(patch.known))
     inverse_depth, tolerance = patch.inverse_depth[patch.known], patch.tolerance[patch.known]
     outside = ~patch.inside[patch.known]
-    least = int(PLANE_SHARE * outside.sum())
+    least = int(max(PLANE_SHARE * outside.sum(), PLANE_COVER * (~patch.inside).sum()))
     planes = planes_through(pixels[outside], inverse_depth[outside], tolerance[outside], least, MOST_PLANES)
     mask, steepest = patch.known & patch.inside, STEEPEST * patch.step_px / frame.camera.focal_px
     stands_out = mask.copy()

@@ -20,7 +20,7 @@ from rotrecon.settings import Settings
 from rotrecon.simulation.simulate import simulate
 from rotrecon.simulation.stereo_noise import StereoErrors
 from rotrecon.workspace import Workspace
-from tests.exact import CAMERA, cone, cylinder, direction_of, exact_frame, noisy
+from tests.exact import CAMERA, cone, cylinder, direction_of, drawing_along, exact_frame, noisy
 from tests.recordings import recording
 from tests.standing import area_round, off_axis, on_plane, table_with, upright
 
@@ -45,7 +45,7 @@ def refused(frame: Frame, area: AreaOfInterest) -> FitFailure:
 directions = st.builds(direction_of, st.floats(-35, 35), st.floats(0, 360))
 
 
-@settings(deadline=None, max_examples=30)
+@settings(deadline=None, max_examples=30, derandomize=True)
 @given(directions, st.floats(0.03, 0.09), st.sampled_from([1.0, 1.5, 2.0]))
 def test_cylinder_is_stroked_along_its_axis(direction, diameter_m, size):
     solid = cylinder(CENTER_M, direction, diameter_m, length_m=0.25)
@@ -54,7 +54,17 @@ def test_cylinder_is_stroked_along_its_axis(direction, diameter_m, size):
     assert beside < 0.05
 
 
-@settings(deadline=None, max_examples=30)
+@pytest.mark.parametrize("diameter_m", [0.015, 0.04, 0.09])
+def test_thing_before_nothing_is_not_taken_for_a_plane(diameter_m):
+    """Its side is flat within a tolerance, and all that is known round an area that it leaves."""
+    solid = cylinder([0, 0, 0.8], [0.1, 1, 0.1], diameter_m, length_m=0.25)
+    area = drawing_along(solid).area
+    angle, beside = off_axis(proposed(exact_frame(solid, wall_m=np.inf), area), solid)
+    assert angle < 2
+    assert beside < 0.05
+
+
+@settings(deadline=None, max_examples=30, derandomize=True)
 @given(directions, st.floats(8, 25), st.sampled_from([1.0, 1.5, 2.0]))
 def test_compact_cone_is_stroked_along_its_axis(direction, half_angle_deg, size):
     solid = cone(CENTER_M, direction, 0.12, half_angle_deg, length_m=0.12)
@@ -63,7 +73,7 @@ def test_compact_cone_is_stroked_along_its_axis(direction, half_angle_deg, size)
     assert beside < 0.05
 
 
-@settings(deadline=None, max_examples=15)
+@settings(deadline=None, max_examples=15, derandomize=True)
 @given(st.floats(-0.15, 0.15), st.floats(-0.1, 0.1), st.sampled_from([1.0, 2.0]))
 def test_ball_is_stroked_through_its_middle(x_m, y_m, size):
     ball = Sphere(np.array([x_m, y_m, 0.9]), np.array([1.0, 0.0, 0.0]), 0.08)
@@ -130,7 +140,7 @@ def test_nearest_of_two_things_is_stroked():
     assert beside < 0.05
 
 
-@settings(deadline=None, max_examples=20)
+@settings(deadline=None, max_examples=20, derandomize=True)
 @given(directions)
 def test_stroke_goes_downward_or_to_the_right(direction):
     solid = cone(CENTER_M, direction, 0.08, 10, length_m=0.2)
