@@ -96,7 +96,7 @@ def _find(scene: Scene, held: Held, segmented: Reconstruction) -> _Found | FitFa
         extent, ends_m = None, (-surface.radius_m, surface.radius_m)
         axis = Axis(surface.center_m, robust_line(scene.ridge.points_m)[1])
     soundness = soundness_of(chosen.fit, scene.patch, ends_m)
-    failure = failure_of(chosen, soundness, scene, ends_m, segmented)
+    failure = failure_of(chosen, soundness, scene, settings)
     return failure or _Found(ranked, chosen, axis, ends_m, extent, soundness)
 
 

@@ -19,9 +19,9 @@ LEAST_HALF_WIDTH_PX = 3.5
 """Of an object that has a colour of its own between its edges."""
 LEAST_POINTS = 12
 """Fewer points say too little of what is a line and what a texture."""
-LEAST_SUPPORT = 0.45
+LEAST_SUPPORT = 0.33
 """Of a line to be trusted: half the lines through texture alone have less."""
-RUNNER_UP_SHARE = 0.75
+RUNNER_UP_SHARE = 0.6
 """Of the support, what a second line may have beside one that is trusted."""
 LEAST_FOUND = 0.6
 """Share of the points with an edge on a line to be trusted."""

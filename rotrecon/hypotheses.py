@@ -16,9 +16,11 @@ from rotrecon.ray_fit import coarse, coarse_pixels, depths_of, spread
 from rotrecon.starts import Ridge, ball_starts, cone_starts, cylinder_starts, ridge
 from rotrecon.surfaces import Lateral, Surface
 
-SCOUT_PIXELS = 300
+SCOUT_PIXELS = 150
 """For the starts; the best of them goes on with all coarse pixels."""
 SCOUT_EDGES = 40
+COST_SCALE = 3.0
+"""Standard deviations of the noise."""
 
 
 @dataclass(frozen=True, eq=False)
@@ -51,6 +53,7 @@ class Scene:
     outline: Outline | None
     """Of the segmented pixels."""
     length_m: float
+    segments: CrossSegments
 
     def __post_init__(self) -> None:
         freeze(self)
@@ -62,7 +65,7 @@ def scene_of(camera: PinholeCamera, patch: Patch, segments: CrossSegments, kept:
     length_m = float(np.linalg.norm(np.ptp(edge.points_m, axis=0))) if len(edge.points_m) else 0.0
     usable = segments.inside & np.isfinite(depth_m)
     outline = mask_outline(segments, kept, usable, patch, ANY_GAP_PX)
-    return Scene(patch, edge, coarse_pixels(patch, segments, kept), outline, length_m)
+    return Scene(patch, edge, coarse_pixels(patch, segments, kept), outline, length_m, segments)
 
 
 def hypotheses(scene: Scene, held: Held) -> dict[Shape, tuple[float, Surface]]:
@@ -76,27 +79,27 @@ def hypotheses(scene: Scene, held: Held) -> dict[Shape, tuple[float, Surface]]:
         "sphere": ball_starts(scene.ridge, points_m, focal_px),
     }
     followed = {shape: _best(scene, held, of_shape) for shape, of_shape in starts.items() if shape != "cone"}
-    cylinder = followed["cylinder"][1]
+    cylinder = followed["cylinder"]
     assert isinstance(cylinder, Lateral)
     followed["cone"] = _best(scene, held, [replace(cylinder, tapers=True), *starts["cone"]])
-    scale = min(scale for scale, _ in followed.values())
-    return {shape: (_cost(scene, surface, scale), surface) for shape, (_, surface) in followed.items()}
+    return {shape: (coarse_cost(scene, surface), surface) for shape, surface in followed.items()}
 
 
-def _best(scene: Scene, held: Held, starts: Sequence[Surface]) -> tuple[float, Surface]:
-    """Scale of the residuals and surface of the start that leads nearest."""
+def _best(scene: Scene, held: Held, starts: Sequence[Surface]) -> Surface:
+    """The surface that the best start leads to."""
     scouts = spread(scene.pixels, SCOUT_PIXELS)
     edges = None if scene.outline is None else scene.outline.chosen(spread(np.arange(len(scene.outline)), SCOUT_EDGES))
     found = [
         coarse(start, scene.patch, scouts, start.units(scene.length_m), held.free(start), edges)[1] for start in starts
     ]
-    best = min(found, key=lambda surface: _cost(scene, surface, 1.0)) if len(found) > 1 else found[0]
-    return coarse(best, scene.patch, scene.pixels, best.units(scene.length_m), held.free(best), scene.outline)
+    best = min(found, key=lambda surface: coarse_cost(scene, surface)) if len(found) > 1 else found[0]
+    return coarse(best, scene.patch, scene.pixels, best.units(scene.length_m), held.free(best), scene.outline)[1]
 
 
-def _cost(scene: Scene, surface: Surface, scale: float) -> float:
-    """Of a surface's residuals, heavy-tailed."""
-    cost = float(cauchy(depths_of(scene.patch, scene.pixels).predict(surface).residual / scale)[0].sum())
+def coarse_cost(scene: Scene, surface: Surface) -> float:
+    """Of a surface's residuals, heavy-tailed, at a scale that noise and a real object's flaws are within."""
+    residual = depths_of(scene.patch, scene.pixels).predict(surface).residual
+    cost = float(cauchy(residual / COST_SCALE)[0].sum())
     if scene.outline is not None:
         cost += float(cauchy(scene.outline.predict(surface).residual)[0].sum())
     return cost if np.isfinite(cost) else np.inf

@@ -6,11 +6,11 @@ from rotrecon.arrays import Bytes
 from rotrecon.circles import SectionState
 from rotrecon.hypotheses import Scene
 from rotrecon.intervals import radius_sigma
-from rotrecon.outcome import DRAW_CLOSE, FailureReason, FitFailure, Intervals, Range
-from rotrecon.reconstruction import Reconstruction
+from rotrecon.outcome import DRAW_CLOSE, FailureReason, FitFailure, Intervals
 from rotrecon.robust import Ranked
 from rotrecon.settings import Settings
 from rotrecon.soundness import Soundness
+from rotrecon.starts import robust_line
 from rotrecon.surfaces import Lateral
 
 
@@ -31,12 +31,10 @@ def too_little(scene: Scene, reachable: bool, settings: Settings) -> FitFailure 
     return None
 
 
-def failure_of(
-    chosen: Ranked, soundness: Soundness, scene: Scene, ends_m: Range, segmented: Reconstruction
-) -> FitFailure | None:
+def failure_of(chosen: Ranked, soundness: Soundness, scene: Scene, settings: Settings) -> FitFailure | None:
     """Why a fit is no result: flat, too short an arc, not along the stroke, not round."""
     assert chosen.fit is not None
-    settings, surface = segmented.settings, chosen.surface
+    surface = chosen.surface
     arc_deg = np.degrees(soundness.arc_rad)
     unsure = radius_sigma(chosen.fit) / surface.size_m
     if unsure > settings.flat_sigma_over_radius or soundness.arc_rad < settings.flat_arc_rad:
@@ -48,7 +46,7 @@ def failure_of(
             "draw the area over its whole width, or look at it from elsewhere"
         )
         return FitFailure(FailureReason.SHORT_ARC, advice)
-    if isinstance(surface, Lateral) and _off_stroke(surface, segmented) > settings.most_off_stroke_rad:
+    if isinstance(surface, Lateral) and _off_stroke(surface, scene) > settings.most_off_stroke_rad:
         advice = "the object does not lie along the stroke; draw the axis along it, or leave it to the program"
         return FitFailure(FailureReason.OFF_AXIS, advice)
     if soundness.inlier_share < settings.least_inlier_share or soundness.roughness > settings.rms_over_radius:
@@ -58,12 +56,11 @@ def failure_of(
     return None
 
 
-def _off_stroke(surface: Lateral, segmented: Reconstruction) -> float:
-    """Angle in the picture between the axis and the stroke."""
-    camera, segments = segmented.frame.camera, segmented.segments
-    ends = camera.project(surface.center_m + np.outer([-0.01, 0.01], surface.direction))
-    along = ends[1] - ends[0]
-    return float(np.arccos(np.clip(abs(along @ segments.along) / max(np.linalg.norm(along), 1e-12), 0, 1)))
+def _off_stroke(surface: Lateral, scene: Scene) -> float:
+    """Angle in space between the axis and the ridge of the object along the stroke, beyond a cone's half angle."""
+    along = robust_line(scene.ridge.points_m)[1]
+    turned = float(np.arccos(np.clip(abs(along @ surface.direction), 0, 1)))
+    return turned - abs(float(np.arctan(surface.slope)))
 
 
 def doubts_of(

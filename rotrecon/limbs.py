@@ -6,6 +6,7 @@ import numpy as np
 
 from rotrecon.arrays import Bools, Floats, Indices, freeze
 from rotrecon.drawing import CrossSegments
+from rotrecon.edges import find_edges
 from rotrecon.fitting import Outline
 from rotrecon.patch import Patch
 from rotrecon.surfaces import Ball, Lateral, Surface
@@ -16,6 +17,12 @@ CLEAR_GAP_PX, ANY_GAP_PX = 2.0, 24.0
 """Unknown depth between object and background that leaves the edge where it is; and the widest that says anything."""
 CLEAR_SHARE = 0.25
 """Of an outline, below which what is seen of the mask's edge says little."""
+OUTLINE_SECTIONS, OUTLINE_REACH = 361, 1.5
+"""Heights at which the outline is looked for, and how far to both sides of the middle, in lengths of the stroke."""
+FEWEST_LIMBS = 12
+"""Fewer limb points are no outline."""
+REACH_SHARE, LEAST_REACH_PX, MOST_REACH_PX = 0.25, 4.0, 10.0
+"""Share of the half width within which an edge is looked for, px at least and at most."""
 CIRCLE_POINTS = 180
 """Limb points of a ball."""
 
@@ -38,9 +45,15 @@ class Limbs:
     def __post_init__(self) -> None:
         freeze(self)
 
+    def chosen(self, which: Bools) -> "Limbs":
+        """Some of the points."""
+        return Limbs(
+            *(values[which] for values in (self.point_px, self.normal_px, self.side, self.along, self.depth_m))
+        )
+
 
 def limbs_of(surface: Surface, patch: Patch, heights_m: Floats) -> Limbs:
-    """Limb points of a surface, of a lateral one at heights (n,) along its axis; those outside the patch are left out.
+    """Limb points of a surface, of a lateral one at heights (n,) along its axis; those outside the picture are left out.
 
     At a limb the surface's normal is square to the ray.
     """
@@ -50,7 +63,9 @@ def limbs_of(surface: Surface, patch: Patch, heights_m: Floats) -> Limbs:
     normal_px = normals[:, :2] / np.array([K[0, 0], K[1, 1]])
     normal_px /= np.linalg.norm(normal_px, axis=1, keepdims=True)
     point_px = patch.camera.project(points)
-    seen = np.isfinite(point_px).all(axis=1) & (patch.pixel_of(point_px) >= 0)
+    size = np.array([patch.camera.width, patch.camera.height])
+    with np.errstate(invalid="ignore"):
+        seen = ((point_px >= 0) & (point_px <= size - 1)).all(axis=1)
     return Limbs(point_px[seen], normal_px[seen], side[seen], along[seen], points[seen, 2])
 
 
@@ -122,6 +137,40 @@ def outline_at(point_px: Floats, sigma_px: Floats, patch: Patch) -> Outline:
     return Outline(patch.camera.unproject(point_px, np.ones(len(point_px))).T, sigma_px, patch.focal_px)
 
 
-def outlines_of(surface: Surface, patch: Patch, length_m: float) -> tuple[tuple[Outline, float], ...]:
-    """The outline in the picture near that of a surface, with the share of its edges that are independent."""
-    return ()
+@dataclass(frozen=True, eq=False)
+class SeenOutline:
+    """What the picture shows of an outline."""
+
+    edges: Outline | None
+    """None where no side of it can be trusted."""
+    sides: int
+    """How many sides can."""
+
+    @property
+    def rank(self) -> tuple[int, int]:
+        """The more of it is seen, the better."""
+        return (self.sides, 0 if self.edges is None else len(self.edges))
+
+
+def seen_outline(surface: Surface, patch: Patch, segments: CrossSegments, length_m: float) -> SeenOutline:
+    """The edges in the picture near the outline of a surface, beside a stroke along `length_m` of it."""
+    nothing = SeenOutline(None, 0)
+    if surface.side > 0:
+        return nothing
+    # what is beside the stroke is not at its heights where one looks along the axis
+    heights_m = np.linspace(-OUTLINE_REACH, OUTLINE_REACH, OUTLINE_SECTIONS) * length_m
+    limbs = limbs_of(surface, patch, heights_m)
+    row = (limbs.point_px - segments.origin_px) @ segments.along
+    limbs = limbs.chosen((row >= 0) & (row <= len(segments.pixel)))
+    if len(limbs.side) < FEWEST_LIMBS:
+        return nothing
+    radius_m = surface.radius_m + surface.slope * limbs.along if isinstance(surface, Lateral) else surface.radius_m
+    half_width_px = radius_m / limbs.depth_m * patch.focal_px
+    reach_px = float(np.clip(REACH_SHARE * np.median(half_width_px), LEAST_REACH_PX, MOST_REACH_PX))
+    found = find_edges(patch.image, limbs.point_px, limbs.normal_px, reach_px, half_width_px, limbs.side)
+    trusted = np.array([side.trusted for side in found.sides])
+    usable = np.isfinite(found.offset_px) & trusted[np.searchsorted(np.unique(limbs.side), limbs.side)]
+    if not usable.any():
+        return nothing
+    place = limbs.point_px[usable] + found.offset_px[usable, None] * limbs.normal_px[usable]
+    return SeenOutline(outline_at(place, found.sigma_px[usable], patch), int(trusted.sum()))

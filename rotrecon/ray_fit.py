@@ -33,8 +33,10 @@ LAST_SCALE = 2.0
 OUTLINE_SCALE = 0.1
 """Scale of the outline's residuals over that of the depths in coarse rounds, at least one sigma."""
 COARSE_ITERATIONS, FINE_ITERATIONS, FINE_ROUNDS = 6, 8, 3
-OVERSAMPLED, LEAST_PIXELS = 20.0, 4000
+OVERSAMPLED, LEAST_PIXELS = 20.0, 2500
 """Pixels compared for each independent one, and at least: more would only repeat them."""
+SETTLED_SIZE = 1e-4
+"""A round that changes the radius by less than this share is the last."""
 NEAR_PX = 4.0
 """Pixels so far outside the outline still speak for or against it."""
 INLIER_SIGMA = 3.0
@@ -127,7 +129,7 @@ def fine(
     outlines: tuple[tuple[Outline, float], ...] = (),
 ) -> RayFit | None:
     """Rounds over the pixels within the outline and close to it; None when there are too few to hold the parameters."""
-    share = 1.0
+    share, size_m = 1.0, surface.size_m
     for _ in range(FINE_ROUNDS):
         pixels = near(surface, patch, patch.drawn & np.isfinite(patch.depth_m), sight)
         if sight.window_px == 1:
@@ -135,50 +137,56 @@ def fine(
         if len(pixels) < 2 * len(units):
             return None
         depths = _measured(patch, pixels, surface, sight)
-        residual = depths.predict(surface).residual
-        sigma, likeness = _noise_of(patch, pixels, residual)
+        sigma, likeness = _noise_of(patch, pixels, depths.predict(surface).residual)
         share = likeness.independent_share
         measurements: list[Measurement] = [depths, *(outline for outline, _ in outlines)]
         weighting = [(sigma, share), *((1.0, outline_share) for _, outline_share in outlines)]
-        refined = refine(surface, measurements, weighting, tukey, free, units, FINE_ITERATIONS)
-        surface = refined.surface
-    prediction = depths.predict(surface)
-    sigma, likeness = _noise_of(patch, pixels, prediction.residual)
-    covariance = _sandwich(prediction, refined.information, patch, pixels, (sigma, share), likeness, free)
-    return RayFit(surface, sight, outlines, free, pixels, prediction.residual, sigma, likeness, covariance)
+        surface = refine(surface, measurements, weighting, tukey, free, units, FINE_ITERATIONS).surface
+        if abs(surface.size_m - size_m) < SETTLED_SIZE * size_m:
+            break
+        size_m = surface.size_m
+    return _finished(surface, patch, pixels, free, sight, outlines)
 
 
-def _sandwich(
-    prediction: Prediction,
-    information: Floats,
+def _finished(
+    surface: Surface,
     patch: Patch,
     pixels: Indices,
-    weighting: tuple[float, float],
-    likeness: Likeness,
     free: Bools,
-) -> Floats:
-    """Covariance (k, k) of an estimate whose errors are alike, H^-1 M H^-1 (Huber 1967).
+    sight: Sight,
+    outlines: tuple[tuple[Outline, float], ...],
+) -> RayFit:
+    """A fit that has come to its end, with the covariance H^-1 M H^-1 of errors that are alike (Huber 1967).
 
-    H is the information the estimate was weighted with, M the variance of its gradient: for the depths J C J' with C
-    their autocorrelation, for outlines, whose share is known, the information itself.
+    H is the information that the depths were weighted with, and the outline's; M the variance of its gradient: of the
+    depths J C J' with C their autocorrelation, of outlines, whose share is known, their information itself.
     """
-    sigma, share = weighting
-    scaled = prediction.residual / sigma
-    _, weight = tukey(scaled)
-    columns = prediction.columns * (weight > 0) / sigma
-    believed = share * (prediction.columns * weight / sigma) @ (prediction.columns / sigma).T
-    spread_of_score = float((weight**2 * scaled**2).sum()) / max(float((weight > 0).sum()), 1.0)
+    depths = _measured(patch, pixels, surface, sight).predict(surface)
+    sigma, likeness = _noise_of(patch, pixels, depths.residual)
+    scaled, share = depths.residual / sigma, likeness.independent_share
+    weight = tukey(scaled)[1]
+    columns = depths.columns * (weight > 0) / sigma
+    from_outlines = sum(
+        (_information(outline.predict(surface), outline_share) for outline, outline_share in outlines),
+        start=np.zeros((len(free), len(free))),
+    )
+    information = share * (columns * weight) @ columns.T + from_outlines
     smeared = np.empty_like(columns)
     for number, column in enumerate(columns):
         image = np.zeros(patch.shape)
         image.ravel()[pixels] = column
         smeared[number] = likeness.smeared(image).ravel()[pixels]
-    variance = information - believed + share**2 * spread_of_score * (columns @ smeared.T)
-    result = np.zeros_like(information)
+    spread_of_score = float((weight * scaled) @ (weight * scaled)) / max(float((weight > 0).sum()), 1.0)
+    variance = share**2 * spread_of_score * (columns @ smeared.T) + from_outlines
+    covariance = np.zeros_like(information)
     kept = np.ix_(free, free)
     inverse = np.linalg.pinv(information[kept], hermitian=True)
-    result[kept] = inverse @ variance[kept] @ inverse
-    return result
+    covariance[kept] = inverse @ variance[kept] @ inverse
+    return RayFit(surface, sight, outlines, free, pixels, depths.residual, sigma, likeness, covariance)
+
+
+def _information(prediction: Prediction, share: float) -> Floats:
+    return share * (prediction.columns * tukey(prediction.residual)[1]) @ prediction.columns.T
 
 
 def predicted(patch: Patch, pixels: Indices, surface: Surface, sight: Sight) -> Prediction:

@@ -1,21 +1,23 @@
 """The robust method: every kind of surface fitted along the rays to the same depths and outline, and ranked."""
 
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 
 import numpy as np
 
 from rotrecon.fitting import tukey
-from rotrecon.guard import Task, settle
-from rotrecon.hypotheses import Held, Scene, hypotheses
-from rotrecon.limbs import outlines_of
+from rotrecon.guard import Outlines, Task, doubting, settle
+from rotrecon.hypotheses import Held, Scene, coarse_cost, hypotheses
+from rotrecon.limbs import seen_outline
 from rotrecon.radii import Shape
-from rotrecon.ray_fit import RayFit, fine, predicted
+from rotrecon.ray_fit import RayFit, coarse, fine, predicted
 from rotrecon.surfaces import Surface
 
 PARAMETERS: dict[Shape, int] = {"cylinder": 5, "cone": 6, "sphere": 4}
 HOPELESS = 2.0
 """Shapes whose coarse cost is so many times that of the best, and a little more, are not looked into any further."""
 LITTLE = 50.0
+OUTLINE_ROUNDS = 2
+"""The better the surface, the more of its outline is found."""
 
 
 @dataclass(frozen=True, eq=False)
@@ -36,41 +38,71 @@ def rank(scene: Scene, held: Held) -> tuple[Ranked, ...]:
     The best is fitted to as many depths as can be believed, the others to the same, so that their costs compare.
     """
     found = hypotheses(scene, held)
-    order = sorted(found, key=lambda shape: found[shape][0] + PARAMETERS[shape])
-    lead = next((fit for shape in order if (fit := _settled(scene, held, found[shape][1])) is not None), None)
+    limit = HOPELESS * min(cost for cost, _ in found.values()) + LITTLE
+    promising = {shape: surface for shape, (cost, surface) in found.items() if cost <= limit}
+    outlines: Outlines = ()
+    followed = {shape: found[shape] for shape in promising}
+    for _ in range(OUTLINE_ROUNDS):
+        outlines = _outlines(scene, [surface for _, surface in followed.values()])
+        followed = {shape: _followed(scene, held, surface, outlines) for shape, (_, surface) in followed.items()}
+    order = sorted(followed, key=lambda shape: followed[shape][0] + PARAMETERS[shape])
+    lead = next((fit for shape in order if (fit := _settled(scene, held, followed[shape][1], outlines))), None)
     if lead is None:
         return ()
-    limit = HOPELESS * min(cost for cost, _ in found.values()) + LITTLE
     ranked: list[Ranked] = []
     for shape in order:
-        cost, surface = found[shape]
-        fit = _like(lead, scene, held, surface) if cost <= limit else None
-        belief = cost if fit is None else _cost(scene, lead, fit) + PARAMETERS[shape] / 2 * np.log(_independent(lead))
-        ranked.append(Ranked(shape, surface if fit is None else fit.surface, fit, belief))
-    if all(one.fit is None for one in ranked):
-        return ()
-    best = min(one.cost for one in ranked if one.fit is not None)
-    known = sorted((one for one in ranked if one.fit is not None), key=lambda one: one.cost)
-    hopeless = [one for one in ranked if one.fit is None]
-    return tuple(
-        [Ranked(one.shape, one.surface, one.fit, one.cost - best) for one in known]
-        + [Ranked(one.shape, one.surface, None, max(one.cost, known[-1].cost - best)) for one in hopeless]
-    )
+        fit = _like(lead, scene, held, followed[shape][1])
+        if fit is not None:
+            cost = _cost(scene, lead, fit) + PARAMETERS[shape] / 2 * np.log(_independent(lead))
+            ranked.append(Ranked(shape, fit.surface, fit, cost))
+    ranked.sort(key=lambda one: one.cost)
+    best, worst = ranked[0].cost, ranked[-1].cost
+    out = [
+        Ranked(shape, surface, None, worst - best + cost) for shape, (cost, surface) in found.items() if cost > limit
+    ]
+    return (*(replace(one, cost=one.cost - best) for one in ranked), *out)
 
 
-def _settled(scene: Scene, held: Held, surface: Surface) -> RayFit | None:
-    outlines = outlines_of(surface, scene.patch, scene.length_m)
-    fit = settle(surface, Task(scene.patch, surface.units(scene.length_m), held.free(surface), outlines))
+def _outlines(scene: Scene, surfaces: list[Surface]) -> Outlines:
+    """The outline in the picture that is best seen from any of the surfaces."""
+    views = (seen_outline(surface, scene.patch, scene.segments, scene.length_m) for surface in surfaces)
+    seen = max(views, key=lambda one: one.rank)
+    return () if seen.edges is None else ((seen.edges, 1.0),)
+
+
+def _followed(scene: Scene, held: Held, surface: Surface, outlines: Outlines) -> tuple[float, Surface]:
+    """Cost and surface, once it has followed the outline."""
+    outline = outlines[0][0] if outlines else scene.outline
+    units = surface.units(scene.length_m)
+    _, surface = coarse(surface, scene.patch, scene.pixels, units, held.free(surface), outline)
+    return coarse_cost(replace(scene, outline=outline), surface), surface
+
+
+def _settled(scene: Scene, held: Held, surface: Surface, outlines: Outlines) -> RayFit | None:
+    """The fit to the depths that can be believed, then to the outline with them; it doubts what the two differ by."""
+    units, free = surface.units(scene.length_m), held.free(surface)
+    depths = _sound(settle(surface, Task(scene.patch, units, free, ())))
+    if depths is None or not outlines:
+        return depths
+    both = _sound(fine(surface, scene.patch, units, free, depths.sight, outlines))
+    return None if both is None else doubting(both, depths)
+
+
+def _sound(fit: RayFit | None) -> RayFit | None:
+    """A fit whose numbers are numbers."""
     return fit if fit is not None and np.isfinite(fit.sigma) and np.isfinite(fit.covariance).all() else None
 
 
 def _like(lead: RayFit, scene: Scene, held: Held, surface: Surface) -> RayFit | None:
     """A surface fitted to the depths and the outline that the lead rests on."""
-    if len(lead.free) == len(held.free(surface)):
-        return lead
     units, free = surface.units(scene.length_m), held.free(surface)
-    fit = fine(surface, scene.patch, units, free, lead.sight, lead.outlines)
-    return fit if fit is not None and np.isfinite(fit.sigma) and np.isfinite(fit.covariance).all() else None
+    if len(lead.free) == len(free):
+        return lead
+    fit = _sound(fine(surface, scene.patch, units, free, lead.sight, lead.outlines))
+    if fit is None or not lead.outlines:
+        return fit
+    depths = _sound(fine(fit.surface, scene.patch, units, free, lead.sight))
+    return None if depths is None else doubting(fit, depths)
 
 
 def _independent(lead: RayFit) -> float:

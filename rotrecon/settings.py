@@ -12,7 +12,7 @@ Method = Literal["robust", "paper"]
 class Settings:
     """What a result depends on besides the frame and the drawing."""
 
-    method: Method = "paper"
+    method: Method = "robust"
     layers: int = 2
     """Objects that overlap in depth inside the area: steps 1 to 3 of paper 3.2 run one time fewer."""
     sigma_factor: float = 3.0
