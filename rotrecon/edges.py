@@ -19,6 +19,8 @@ LEAST_HALF_WIDTH_PX = 3.5
 """Of an object that has a colour of its own between its edges."""
 LEAST_POINTS = 12
 """Fewer points say too little of what is a line and what a texture."""
+LEAST_LENGTH_PX = 8.0
+"""Of a stretch: twice the distance over which steps are averaged."""
 LEAST_SUPPORT = 0.33
 """Of a line to be trusted: half the lines through texture alone have less."""
 RUNNER_UP_SHARE = 0.6
@@ -97,8 +99,9 @@ def find_edges(
 
     `normal_px` (N, 2) are unit vectors away from the object, `half_width_px` (N,) is half the object's width there,
     `reach_px` is how far the prediction may be off. `side` (N,) numbers the stretches, each of which is one smooth line
-    close to parallel to its points: the two limbs of a cylinder, or all of a ball's circle. Its `Side` says whether what
-    was found there is the outline. ValueError for shapes that do not fit, and for a reach that is not positive.
+    close to parallel to its points: the two limbs of a cylinder, or all of a ball's circle. Its `Side` says whether
+    what was found there is the outline. Points 1 to 2 px apart are enough. ValueError for shapes that do not fit, and
+    for a reach that is not positive.
     """
     half_width = np.broadcast_to(np.asarray(half_width_px, dtype=np.float64), len(point_px))
     numbers = np.zeros(len(point_px), dtype=np.int64) if side is None else side
@@ -108,7 +111,7 @@ def find_edges(
         raise ValueError("the reach must be positive")
     usable = _usable(image, point_px, normal_px, half_width, reach_px)
     groups = [np.flatnonzero(numbers == number) for number in np.unique(numbers)]
-    read = [group[usable[group]] for group in groups if usable[group].sum() >= LEAST_POINTS]
+    read = [rows for rows in (group[usable[group]] for group in groups) if _long_enough(point_px[rows])]
     stretches = [Stretch(point_px[rows], normal_px[rows], half_width[rows]) for rows in read]
     profiles = _profiles(image, stretches, reach_px) if stretches else []
     found = np.full((3, len(point_px)), np.nan)
@@ -128,6 +131,11 @@ def _usable(image: Bytes, point_px: Floats, normal_px: Floats, half_width_px: Fl
     ends = np.stack([point_px - most * normal_px, point_px + most * normal_px])
     within = (ends >= 0) & (ends <= np.array(image.shape[1::-1]) - 1)
     return within.all(axis=(0, 2)) & (half_width_px >= LEAST_HALF_WIDTH_PX)
+
+
+def _long_enough(point_px: Floats) -> bool:
+    length = np.linalg.norm(np.diff(point_px, axis=0), axis=1).sum()
+    return len(point_px) >= LEAST_POINTS and length >= LEAST_LENGTH_PX
 
 
 def _profiles(image: Bytes, stretches: list[Stretch], reach_px: float) -> list[Profiles]:

@@ -222,7 +222,7 @@ def test_a_round_outline_is_moved_and_grown_in_one_piece(radius):
     assert edges.sides[0].found > 0.95
 
 
-def test_points_at_the_border_and_objects_too_thin_have_no_edge():
+def test_points_at_the_border_and_objects_too_thin_or_short_have_no_edge():
     image = encoded(strip(0.0, 15, WOOD, WALL))
     point, normal, side = sides_of(0.0, 15)
     outside = find_edges(image, point - [0, 75], normal, REACH_PX, 15, side)
@@ -231,6 +231,8 @@ def test_points_at_the_border_and_objects_too_thin_have_no_edge():
     thin = find_edges(image, point, normal, REACH_PX, LEAST_HALF_WIDTH_PX - 0.1, side)
     assert np.isnan(thin.offset_px).all()
     assert LEAST_HALF_WIDTH_PX > CLEAR_PX
+    end_on = MIDDLE + 0.1 * (point - MIDDLE)
+    assert np.isnan(find_edges(image, end_on, normal, REACH_PX, 15, side).offset_px).all()
 
 
 def test_sides_come_in_the_order_of_their_numbers():
