@@ -53,7 +53,7 @@ class Side:
     runner_up: float
     """The same of the best other line: a shadow, a print, or else this one is."""
     found: float
-    """Share of its points with an edge."""
+    """Share with an edge of its points that are well inside the picture."""
     sigma_px: float
     """Standard error of its mean offset."""
     blur_px: float
@@ -118,10 +118,8 @@ def find_edges(
     sides = dict.fromkeys(numbers.tolist(), NOTHING)
     for rows, profile, steps in zip(read, profiles, find_steps(profiles), strict=True):
         found[:, rows] = steps.offset_px, steps.sigma_px, steps.contrast
-        number = numbers[rows[0]]
-        share = float(np.isfinite(steps.offset_px).sum() / (numbers == number).sum())
-        line = profile.line
-        sides[int(number)] = Side(line.support, line.runner_up, share, steps.mean_sigma_px, steps.blur_px)
+        line, share = profile.line, float(np.isfinite(steps.offset_px).mean())
+        sides[int(numbers[rows[0]])] = Side(line.support, line.runner_up, share, steps.mean_sigma_px, steps.blur_px)
     return Edges(*found, sides=tuple(sides[number] for number in sorted(sides)))
 
 
