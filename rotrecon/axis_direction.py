@@ -22,8 +22,6 @@ MAD_TO_SIGMA = 1.4826
 """Standard deviation of a normal distribution over its median magnitude."""
 PLANE_SHARE = 0.5
 """Share of what is known round the object that must lie on the plane: most of it."""
-OTHERS_SHARE = 0.5
-"""Pixels round the object over pixels of it, at least: fewer may be of its own side where it leaves the area."""
 AWAY_RAD = float(np.deg2rad(45.0))
 """Largest angle of the direction off the plane of stroke and camera: farther off it lies across the stroke."""
 ALONG = "draw the axis along it, or let the direction be free"
@@ -70,7 +68,7 @@ def _square_to_plane(found: Foreground, camera: PinholeCamera) -> Floats | FitFa
     patch, others = found.patch, found.patch.known & ~found.mask
     advice = "nothing flat is seen round the object; draw the area larger, or let the direction be free"
     refusal = FitFailure(FailureReason.CONSTRAINED, advice)
-    if not found.planes or others.sum() < OTHERS_SHARE * found.mask.sum():
+    if not found.planes:
         return refusal
     pixels, depth = patch.frame_px(places_of(others)), patch.inverse_depth[others]
     plane, on = refined(found.planes[0], pixels, depth, patch.tolerance[others])
@@ -91,9 +89,8 @@ def _under_stroke(found: Foreground, stroke: ObjectAxis, camera: PinholeCamera) 
     if near.sum() < FEWEST_PIXELS:
         advice = f"no surface that stands out is under the stroke; {ALONG}"
         return FitFailure(FailureReason.CONSTRAINED, advice)
-    s, t = lengthwise[near] / length_px, crosswise[near]
-    terms = np.column_stack([1 - s, s, t, t * t])
-    ends = _robust(terms, patch.inverse_depth[found.mask][near])[:2]
+    share = lengthwise[near] / length_px
+    ends = _robust(np.column_stack([1 - share, share]), patch.inverse_depth[found.mask][near])
     points_m = camera.unproject(np.array([start, end]), 1 / ends)
     return (points_m[1] - points_m[0]) / np.linalg.norm(points_m[1] - points_m[0])
 

@@ -92,12 +92,13 @@ def test_plane_is_refused_where_none_is_seen():
 
 def test_plane_is_refused_where_most_of_the_rest_is_not_on_it():
     frame, drawing = standing()
-    depth = frame.depth_m.copy()
-    v, u = np.indices(depth.shape)
-    waves = 0.05 * np.sin(u / 6.0) * np.sin(v / 7.0)
-    inside = np.isfinite(exact_frame(upright(), wall_m=np.inf).depth_m)
-    depth[~inside] += waves[~inside].astype(np.float32)
-    refused(replace(frame, points_m=CAMERA.cloud(depth)), drawing, "plane")
+    thing = np.isfinite(exact_frame(upright(), wall_m=np.inf).depth_m)
+    v, u = np.indices(thing.shape)
+    waves = np.where(thing | (v > 175), 0, 0.05 * np.sin(u / 6.0) * np.sin(v / 7.0))
+    rough = replace(frame, points_m=CAMERA.cloud(frame.depth_m + waves))
+    large = replace(drawing, area=area_round(upright(), 2.0))
+    assert isinstance(held_direction(frame, replace(large, constraints=Constraints(direction="plane"))), np.ndarray)
+    refused(rough, large, "plane")
 
 
 @settings(deadline=None, max_examples=30, derandomize=True)
