@@ -60,7 +60,7 @@ class Profiles:
     stretch: Stretch
     line: Line
     across_px: Floats
-    """(T,) signed distance from the line, outward, evenly spaced."""
+    """(T,) signed distance from the line, outward; 1 px apart where that is clear of the edge."""
     light: Floats
     """(N, T, 3) linear light."""
 
@@ -169,9 +169,8 @@ def _covariance(texture: Floats) -> Floats:
 
 
 def _process(across_px: Floats, texture: Floats, variance: Floats) -> Floats:
-    """Covariance (3, T, T) of a texture (N, Z, 3): its correlation falls off exponentially with distance."""
-    lag = round(1 / float(across_px[1] - across_px[0]))
-    together = (texture[:, lag:] * texture[:, :-lag]).mean(axis=(0, 1))
+    """Covariance (3, T, T) of a texture (N, Z, 3), 1 px apart, whose correlation falls off exponentially."""
+    together = (texture[:, 1:] * texture[:, :-1]).mean(axis=(0, 1))
     correlation = (together / ((texture**2).mean(axis=(0, 1)) + COLOUR_FLOOR)).clip(*CORRELATION)
     return variance[:, None, None] * correlation[:, None, None] ** np.abs(across_px[:, None] - across_px)
 

@@ -11,10 +11,10 @@ from rotrecon.arrays import Bools, Bytes, Floats, freeze
 from rotrecon.edge_lines import BEYOND_PX, Stretch, find_line
 from rotrecon.edge_steps import Profiles, find_steps
 
-PROFILE_PX = 5.0
-"""How far from an edge its two sides are compared: farther off are other things, nearer too little of a texture."""
-STEP_PX = 0.5
-"""Distance of the samples across: half a pixel loses nothing of what a picture holds."""
+ACROSS_PX = np.array([-5, -4, -3, -2, -1.5, -1, -0.5, 0, 0.5, 1, 1.5, 2, 3, 4, 5])
+"""Samples across an edge: half a pixel apart where it may be, one where texture is learnt, and no farther off, where
+other things begin."""
+PROFILE_PX = float(ACROSS_PX[-1])
 LEAST_HALF_WIDTH_PX = 3.5
 """Of an object that has a colour of its own between its edges."""
 LEAST_POINTS = 12
@@ -149,8 +149,7 @@ def _profiles(image: Bytes, stretches: list[Stretch], reach_px: float) -> list[P
     for stretch in stretches:
         here = Stretch(stretch.point_px - low, stretch.normal_px, stretch.half_width_px)
         line = find_line(picture, here, reach_px)
-        inward = min(PROFILE_PX, float(here.half_width_px.min()))
-        across = STEP_PX * np.arange(-np.floor(inward / STEP_PX), PROFILE_PX / STEP_PX + 1)
+        across = ACROSS_PX[-ACROSS_PX <= here.half_width_px.min()]
         place = here.profiles_at(line.offset_px, across)
         at = [place[..., 1], place[..., 0]]
         light = [SCIPY.map_coordinates(spline, at, order=3, prefilter=False, mode="nearest") for spline in splines]
