@@ -7,7 +7,7 @@ import numpy as np
 
 from rotrecon.arrays import Floats
 
-LAGS = (1, 2, 3, 4, 6, 8, 11, 15)
+LAGS = (1, 2, 4, 7, 12)
 """Distances, px, at which residuals are compared."""
 LENGTHS_PX = (0.7, 1.0, 1.5, 2.0, 3.0, 4.0, 5.0, 6.0, 8.0, 10.0, 12.0)
 """Correlation lengths that are told apart."""
@@ -39,24 +39,22 @@ class Likeness:
         return self.alike * np.asarray(together) + (1.0 - self.alike) * image
 
 
-def likeness_of(residual: Floats, *, least: Likeness | None = None) -> Likeness:
-    """The likeness of residuals (h, w), NaN where there is none; at least that of the noise itself if it is known."""
+def likeness_of(residual: Floats) -> Likeness:
+    """The likeness of residuals (h, w), NaN where there is none."""
     known = np.isfinite(residual)
     value = np.where(known, residual, 0.0)
-    lags, alike = [], []
+    lags: list[float] = []
+    alike: list[float] = []
     variance = float((value**2).sum()) / max(int(known.sum()), 1)
     for lag in LAGS:
         total = pairs = 0.0
         for first, second in ((np.s_[lag:], np.s_[:-lag]), (np.s_[:, lag:], np.s_[:, :-lag])):
-            total += float((value[first] * value[second]).sum())
-            pairs += float((known[first] & known[second]).sum())
+            total += float(np.vdot(value[first], value[second]))
+            pairs += float(np.count_nonzero(known[first] & known[second]))
         if pairs >= FEWEST_PAIRS and variance > 0:
             lags.append(lag)
             alike.append(total / pairs / variance)
-    found = _fitted(np.array(lags, dtype=np.float64), np.array(alike))
-    if least is None or found.independent_share < least.independent_share:
-        return found
-    return least
+    return _fitted(np.array(lags), np.array(alike))
 
 
 def _fitted(lags: Floats, alike: Floats) -> Likeness:

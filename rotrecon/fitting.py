@@ -56,9 +56,6 @@ class Depths:
     """(N,) depth in standard deviations of its noise; see `RayNoise.steps`."""
     noise: RayNoise
 
-    def __post_init__(self) -> None:
-        freeze(self)
-
     def __len__(self) -> int:
         return len(self.steps)
 
@@ -216,7 +213,10 @@ def _step(gradient: Floats, information: Floats, damping: float, free: Bools, un
     step = np.zeros(len(units))
     kept = np.ix_(free, free)
     damped = information[kept] + damping * np.diag(np.maximum(np.diag(information)[free], 1e-300))
-    step[free] = np.linalg.lstsq(damped, gradient[free], rcond=None)[0]
+    try:
+        step[free] = np.linalg.solve(damped, gradient[free])
+    except np.linalg.LinAlgError:
+        return step
     return step * units
 
 

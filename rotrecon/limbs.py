@@ -17,7 +17,7 @@ CLEAR_GAP_PX, ANY_GAP_PX = 2.0, 24.0
 """Unknown depth between object and background that leaves the edge where it is; and the widest that says anything."""
 CLEAR_SHARE = 0.25
 """Of an outline, below which what is seen of the mask's edge says little."""
-OUTLINE_SECTIONS, OUTLINE_REACH = 361, 1.5
+OUTLINE_SECTIONS, OUTLINE_REACH = 241, 1.5
 """Heights at which the outline is looked for, and how far to both sides of the middle, in lengths of the stroke."""
 FEWEST_LIMBS = 12
 """Fewer limb points are no outline."""
@@ -155,7 +155,7 @@ class SeenOutline:
 def seen_outline(surface: Surface, patch: Patch, segments: CrossSegments, length_m: float) -> SeenOutline:
     """The edges in the picture near the outline of a surface, beside a stroke along `length_m` of it."""
     nothing = SeenOutline(None, 0)
-    if surface.side > 0:
+    if surface.side > 0 or np.ptp(patch.picture()) == 0:
         return nothing
     # what is beside the stroke is not at its heights where one looks along the axis
     heights_m = np.linspace(-OUTLINE_REACH, OUTLINE_REACH, OUTLINE_SECTIONS) * length_m

@@ -51,6 +51,11 @@ class Patch:
         """Focal length."""
         return self.camera.focal_px
 
+    def picture(self) -> Bytes:
+        """The rectangle (h, w, 3) of the image."""
+        left, top = self.corner_px.astype(np.int32)
+        return self.image[top : top + self.shape[0], left : left + self.shape[1]]
+
     def frame_pixels(self, pixels: Indices) -> Indices:
         """Index (n,) into the flattened frame of pixels (n,) of the patch."""
         row, column = np.divmod(pixels, self.shape[1])

@@ -1,6 +1,7 @@
 """The robust method: every kind of surface fitted along the rays to the same depths and outline, and ranked."""
 
 from dataclasses import dataclass, replace
+from operator import itemgetter
 
 import numpy as np
 
@@ -43,7 +44,9 @@ def rank(scene: Scene, held: Held) -> tuple[Ranked, ...]:
     outlines: Outlines = ()
     followed = {shape: found[shape] for shape in promising}
     for _ in range(OUTLINE_ROUNDS):
-        outlines = _outlines(scene, [surface for _, surface in followed.values()])
+        outlines = _outlines(scene, [surface for _, surface in sorted(followed.values(), key=itemgetter(0))])
+        if not outlines:
+            break
         followed = {shape: _followed(scene, held, surface, outlines) for shape, (_, surface) in followed.items()}
     order = sorted(followed, key=lambda shape: followed[shape][0] + PARAMETERS[shape])
     lead = next((fit for shape in order if (fit := _settled(scene, held, followed[shape][1], outlines))), None)

@@ -77,15 +77,20 @@ def _shape(surface: Surface, heights_m: Floats) -> Floats:
 
 def _radii(sections: SpaceSections, shape_m: Floats, fit: RayFit, fewest: int) -> tuple[Floats, Floats]:
     """Median distance (S,) of each section's inner points from the axis, and its standard deviation (S,)."""
-    radius, sigma = np.full(len(shape_m), np.nan), np.full(len(shape_m), np.nan)
-    for number in range(len(shape_m)):
-        place = sections.in_plane(sections.points_in(number).astype(np.float64))
-        place = place[np.abs(place[:, 0]) < INNER * shape_m[number]]
-        if len(place) < fewest:
-            continue
-        distance = np.hypot(place[:, 0], place[:, 1])
-        radius[number] = np.median(distance)
-        spread = np.median(np.abs(distance - radius[number])) * TO_SIGMA
-        independent = max(len(place) * np.sqrt(fit.likeness.independent_share), 1.0)
-        sigma[number] = MEDIAN_LOSS * spread / np.sqrt(independent)
-    return radius, sigma
+    number = np.repeat(np.arange(len(shape_m)), np.diff(sections.start))
+    place = sections.in_plane(sections.points_of(np.ones(len(shape_m), dtype=np.bool_)).astype(np.float64))
+    inner = np.abs(place[:, 0]) < INNER * shape_m[number]
+    number, distance = number[inner], np.hypot(place[inner, 0], place[inner, 1])
+    count = np.bincount(number, minlength=len(shape_m))
+    radius = _medians(number, distance, count)
+    sigma = _medians(number, np.abs(distance - radius[number]), count) * TO_SIGMA * MEDIAN_LOSS
+    independent = np.maximum(count * np.sqrt(fit.likeness.independent_share), 1.0)
+    few = count < fewest
+    return np.where(few, np.nan, radius), np.where(few, np.nan, sigma / np.sqrt(independent))
+
+
+def _medians(number: Indices, values: Floats, count: Indices) -> Floats:
+    """Lower median (S,) of the values (n,) of each number, of which there are `count` (S,); NaN for none."""
+    ordered = values[np.lexsort((values, number))]
+    place = np.cumsum(count) - count + np.maximum(count - 1, 0) // 2
+    return np.where(count > 0, np.append(ordered, np.nan)[np.minimum(place, len(ordered))], np.nan)

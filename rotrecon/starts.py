@@ -4,7 +4,7 @@ from dataclasses import dataclass
 
 import numpy as np
 
-from rotrecon.arrays import Bools, Floats, freeze
+from rotrecon.arrays import Bools, Floats, Indices, freeze
 from rotrecon.camera import PinholeCamera
 from rotrecon.drawing import CrossSegments
 from rotrecon.surfaces import Ball, Lateral, turn_of
@@ -13,7 +13,7 @@ FEWEST_PIXELS = 3
 """A section with fewer has no middle and no width worth the name."""
 ROBUST_ROUNDS = 8
 """Reweightings of a line or a circle: each halves what outliers pull, or better."""
-CONE_ANGLES_RAD = tuple(np.deg2rad([-45.0, -30.0, -15.0, 15.0, 30.0, 45.0]))
+CONE_ANGLES_RAD = tuple(np.deg2rad([-40.0, -20.0, 20.0, 40.0]))
 """Half angles of cones to start from; nearer ones are found from any of them, or from the cylinder."""
 CONE_ANGLE_HELD = 0.95
 """Cosine between a start's axis and a direction that is held, below which the start is of no use."""
@@ -37,17 +37,23 @@ class Ridge:
 def ridge(camera: PinholeCamera, depth_m: Floats, segments: CrossSegments, kept: Bools) -> Ridge:
     """Middles and widths of the sections of the kept (S, W) pixels of known depth (S, W)."""
     rows = np.flatnonzero(kept.sum(axis=1) >= FEWEST_PIXELS)
-    middle, width, depth = np.empty(len(rows)), np.empty(len(rows)), np.empty(len(rows))
-    for number, row in enumerate(rows):
-        columns = np.flatnonzero(kept[row])
-        low, middle[number], high = np.percentile(columns, [2, 50, 98])
-        width[number] = (high - low) / 0.96 + 1
-        off = np.abs(columns - middle[number])
-        near = columns[off <= max(0.1 * width[number], off.min())]
-        depth[number] = np.median(depth_m[row, near])
+    kept, depth_m = kept[rows], depth_m[rows]
+    rank = kept.cumsum(axis=1)
+    count = rank[:, -1:]
+    low, middle, high = ((rank > share * (count - 1)).argmax(axis=1) for share in (0.02, 0.5, 0.98))
+    width = (high - low) / 0.96 + 1
+    half = np.maximum(0.1 * width, 1.0)[:, None]
+    near = kept & (np.abs(np.arange(kept.shape[1]) - middle[:, None]) <= half)
+    depth = medians(np.where(near, depth_m, np.inf), near.sum(axis=1))
     across = segments.first_offset_px + middle
     pixel = segments.origin_px + rows[:, None] * segments.along + across[:, None] * segments.across
     return Ridge(camera.unproject(pixel, depth), width * depth / camera.focal_px)
+
+
+def medians(values: Floats, count: Indices) -> Floats:
+    """Lower median (n,) of the `count` (n,) smallest values of each row (n, W), the others being infinite."""
+    ordered = np.sort(values, axis=1)
+    return ordered[np.arange(len(values)), np.maximum(count - 1, 0) // 2]
 
 
 def cylinder_starts(edge: Ridge, points_m: Floats, direction: Floats | None, focal_px: float) -> list[Lateral]:

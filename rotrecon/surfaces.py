@@ -32,9 +32,6 @@ class Trace:
     columns: Floats
     """(k, N) derivatives of the depth by the parameters."""
 
-    def __post_init__(self) -> None:
-        freeze(self)
-
 
 @dataclass(frozen=True, eq=False)
 class Tangency:
@@ -46,9 +43,6 @@ class Tangency:
     """(N,) along z, of the point of the ray that is nearest to the surface."""
     columns: Floats
     """(k, N) derivatives of the gap by the parameters."""
-
-    def __post_init__(self) -> None:
-        freeze(self)
 
 
 @dataclass(frozen=True, eq=False)
@@ -133,11 +127,7 @@ class Lateral:
         x, y, h = origin[:, None] + depth * turned
         radius = self.radius_m + self.slope * h
         lever = h + self.slope * radius
-        columns = [-x, -y, -x * lever, -y * lever, -radius]
-        if self.tapers:
-            columns.append(-radius * h)
-        scale = -self.side / root
-        return Trace(depth, hit, np.stack(columns) * scale)
+        return Trace(depth, hit, self._columns(x, y, h, radius, lever) * (-self.side / root))
 
     def tangency(self, rays: Rays) -> Tangency:
         """How far rays pass outside it."""
@@ -146,11 +136,20 @@ class Lateral:
         x, y, h = origin[:, None] + depth * turned
         radius = self.radius_m + self.slope * h
         lever = h + self.slope * radius
-        columns = [-x, -y, -x * lever, -y * lever, -radius]
-        if self.tapers:
-            columns.append(-radius * h)
         gap = (x**2 + y**2 - radius**2) / (2 * radius)
-        return Tangency(gap, depth, np.stack(columns) / radius)
+        return Tangency(gap, depth, self._columns(x, y, h, radius, lever) / radius)
+
+    def _columns(self, x: Floats, y: Floats, h: Floats, radius: Floats, lever: Floats) -> Floats:
+        """Derivatives (k, N) of (x^2 + y^2 - radius^2) / 2 at points of the surface's own coordinates."""
+        columns = np.empty((6 if self.tapers else 5, len(x)))
+        np.negative(x, out=columns[0])
+        np.negative(y, out=columns[1])
+        np.multiply(columns[0], lever, out=columns[2])
+        np.multiply(columns[1], lever, out=columns[3])
+        np.negative(radius, out=columns[4])
+        if self.tapers:
+            np.multiply(columns[4], h, out=columns[5])
+        return columns
 
     def _radius_there(self, turned: Floats, origin: Floats, depth: Floats) -> Floats:
         return self.radius_m + self.slope * (origin[2] + depth * turned[2])
@@ -169,12 +168,13 @@ class Lateral:
         """The surface after a step (k,) of its parameters."""
         across, toward, axis = self.turn
         direction = axis + step[2] * across + step[3] * toward
-        direction = direction / np.linalg.norm(direction)
-        center = self.center_m + step[0] * across + step[1] * toward
+        direction /= np.sqrt(direction @ direction)
+        turned = across - (across @ direction) * direction
+        turned /= np.sqrt(turned @ turned)
         return replace(
             self,
-            center_m=center,
-            turn=turn_of(direction, -center),
+            center_m=self.center_m + step[0] * across + step[1] * toward,
+            turn=np.stack([turned, _cross(direction, turned), direction]),
             radius_m=self.radius_m + float(step[4]),
             slope=self.slope + float(step[5]) if self.tapers else self.slope,
         )
@@ -235,6 +235,12 @@ class Ball:
 
 
 Surface = Lateral | Ball
+
+
+def _cross(first: Floats, second: Floats) -> Floats:
+    """Cross product (3,) of vectors (3,); numpy's takes ten times as long for so little."""
+    (a, b, c), (x, y, z) = first, second
+    return np.array([b * z - c * y, c * x - a * z, a * y - b * x])
 
 
 def turn_of(direction: Floats, toward: Floats) -> Floats:
