@@ -149,7 +149,8 @@ def _profiles(image: Bytes, stretches: list[Stretch], reach_px: float) -> list[P
     for stretch in stretches:
         here = Stretch(stretch.point_px - low, stretch.normal_px, stretch.half_width_px)
         line = find_line(picture, here, reach_px)
-        across = ACROSS_PX[-ACROSS_PX <= here.half_width_px.min()]
+        inward = float(here.half_width_px.min())
+        across = ACROSS_PX[-inward <= ACROSS_PX]
         place = here.profiles_at(line.offset_px, across)
         at = [place[..., 1], place[..., 0]]
         light = [SCIPY.map_coordinates(spline, at, order=3, prefilter=False, mode="nearest") for spline in splines]
