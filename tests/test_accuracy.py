@@ -1,12 +1,14 @@
 """How large errors are on a part of the accuracy set, with fixed seeds; and that its bound and its clouds are right."""
 
 from dataclasses import replace
+from itertools import product
 
 import numpy as np
 import pytest
 from scipy.optimize import least_squares
 
 from app.bench.accuracy import peers
+from app.bench.accuracy.belief_tables import NOISES
 from app.bench.accuracy.bound import cramer_rao, derivatives, near_depth
 from app.bench.accuracy.clouds import (
     CAMERA,
@@ -28,19 +30,22 @@ from app.bench.accuracy.size_tables import CORRELATED_RMS, bound_of, quantities,
 from app.bench.accuracy.statistics import coverage, errors, far_off_count, radius_coverage, refused_share
 from app.bench.accuracy.trials import METHOD, Found, Plan, trials
 from rotrecon.primitives import Frustum, Sphere
-from rotrecon.settings import Settings
 from rotrecon.simulation.raycast import first_hit
 
-KNOWN = Settings().method == METHOD
-"""Until it is what everybody gets, its accuracy is nobody's."""
-POSES, FULL_POSES = 20, 8
+POSES, FULL_POSES = 10, 5
 OUTLIERS = WHITE[3]
 """0.25 px, 5 % outliers, 120 degrees."""
 WHITE_RATIO = 1.5
-"""RMS over its bound: 1.25 is asked of 200 poses, and 20 scatter by a sixth."""
+"""RMS over its bound: 1.25 is asked of 200 poses, and 10 scatter by a fifth."""
 CORRELATED_FACTOR = 1.25
 """On the limits of the issue, for the same reason."""
 COVERED = 0.8
+NOT_YET = {
+    ("wire", "white"),
+    ("ball", "white"),
+    *product(TRUE_KINDS, ("length", "box")),
+}
+"""Objects and kinds of noise whose limits are not reached yet."""
 
 
 def exact(name: str, seed: int = 0) -> Cloud:
@@ -235,38 +240,40 @@ def test_document_puts_figures_beside_what_is_asked():
 
 @pytest.fixture(scope="module")
 def found() -> Found:
-    if not KNOWN:
-        pytest.skip(f"method {METHOD!r} is not the default yet")
-    plan = Plan(METHOD, POSES, draws=1, cells=(OUTLIERS, *CORRELATED), compared=False)
+    plan = Plan(poses=POSES, draws=1, cells=(OUTLIERS, *CORRELATED), compared=False)
     full = replace(plan, poses=FULL_POSES, cells=(FULL_MODEL,), supersampling=1)
-    return Found([*trials(plan, processes=1), *trials(full, processes=1)])
+    return Found([*trials(plan), *trials(full)])
 
 
-@pytest.mark.parametrize("name", TRUE_KINDS)
-def test_white_noise_costs_little_more_than_the_bound(found, name):
-    part = found.of(name, OUTLIERS, METHOD)
+def cases(*cells: Cell) -> list:
+    """Every object in some cells; those whose limit is not reached yet may fail."""
+    mark = pytest.mark.xfail(reason="not reached yet")
+    found = product(TRUE_KINDS, cells)
+    return [pytest.param(*case, marks=[mark] if (case[0], case[1].noise) in NOT_YET else []) for case in found]
+
+
+@pytest.mark.parametrize(("name", "cell"), cases(OUTLIERS))
+def test_white_noise_costs_little_more_than_the_bound(found, name, cell):
+    part = found.of(name, cell, METHOD)
     assert refused_share([trial.outcome for trial in part]) == 0
     for quantity in quantities(name):
         assert rms_of(part, quantity) <= WHITE_RATIO * bound_of(part, quantity)
 
 
-@pytest.mark.parametrize("cell", CORRELATED)
-@pytest.mark.parametrize("name", TRUE_KINDS)
+@pytest.mark.parametrize(("name", "cell"), cases(*CORRELATED))
 def test_correlated_noise_stays_within_its_limit(found, name, cell):
     part = found.of(name, cell, METHOD)
     assert refused_share([trial.outcome for trial in part]) == 0
     assert rms_of(part, quantities(name)[-1]) <= CORRELATED_FACTOR * CORRELATED_RMS[name]
 
 
-@pytest.mark.parametrize("noise", ["white", "length", "box", "matched"])
-def test_intervals_hold_the_truth(found, noise):
-    pooled = [trial.outcome for name in TRUE_KINDS for trial in found.of_noise(name, noise, METHOD)]
-    assert radius_coverage(pooled).count >= 0.9 * len(pooled)
+def test_intervals_hold_the_truth(found):
+    pooled = [trial.outcome for name in TRUE_KINDS for noise in NOISES for trial in found.of_noise(name, noise, METHOD)]
+    assert radius_coverage(pooled).count == sum(not outcome.refused for outcome in pooled)
     assert radius_coverage(pooled).covered >= COVERED
 
 
-def test_no_wrong_kind_is_stated_with_certainty(found):
-    for name, kind in TRUE_KINDS.items():
-        for noise in ("white", "length", "box", "matched"):
-            outcomes = [trial.outcome for trial in found.of_noise(name, noise, METHOD)]
-            assert {outcome.kind for outcome in outcomes if outcome.certain} <= {kind}
+@pytest.mark.parametrize(("name", "cell"), cases(OUTLIERS, *CORRELATED, FULL_MODEL))
+def test_no_wrong_kind_is_stated_with_certainty(found, name, cell):
+    outcomes = [trial.outcome for trial in found.of(name, cell, METHOD)]
+    assert {outcome.kind for outcome in outcomes if outcome.certain} <= {TRUE_KINDS[name]}
