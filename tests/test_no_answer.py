@@ -8,7 +8,10 @@ from rotrecon.answer import answer
 from rotrecon.drawing import DrawingError
 from rotrecon.reconstruct import reconstruct
 from rotrecon.settings import Settings
-from tests.distractors import AREAS, Area
+from rotrecon.simulation.distractors import SMALL_CAMERA
+from rotrecon.simulation.simulate import simulate
+from rotrecon.simulation.stereo_noise import StereoErrors
+from tests.distractors import AREAS, ERRORS, Area
 
 NO_DEPTH = {"hole", "no depth"}
 MAY_HAVE_NONE = NO_DEPTH | {"few pixels"}
@@ -32,6 +35,13 @@ def test_no_certain_answer_where_nothing_is_round(area: Area) -> None:
     assert area.kind not in NO_DEPTH
     assert content["certain"] is False, content
     assert content["reasons"] or content["tool"], "an answer that names no tool says why"
+
+
+@pytest.mark.parametrize("errors", ERRORS, ids=["exact", "white", "stereo"])
+@pytest.mark.parametrize("name", ["ball", "pipe", "cone"])
+def test_what_is_round_is_answered_with_certainty_by_the_same_settings(name: str, errors: StereoErrors | None) -> None:
+    scene = simulate(name, 0, SMALL_CAMERA, errors, supersampling=1)
+    assert answer(reconstruct(scene.frame, scene.drawing, Settings()))["certain"] is True
 
 
 def test_the_areas_are_many_and_different() -> None:
