@@ -9,7 +9,7 @@ from rotrecon.camera import PinholeCamera
 from rotrecon.drawing import AreaOfInterest, ObjectAxis
 from rotrecon.foreground import FEWEST_PIXELS, Foreground, find_foreground, places_of
 from rotrecon.frame import Frame
-from rotrecon.hollow import runs_along
+from rotrecon.hollow import straight_line
 from rotrecon.mirror import Mirror
 from rotrecon.outcome import FailureReason, FitFailure
 from rotrecon.planes import least_squares
@@ -55,7 +55,9 @@ def propose_axis(frame: Frame, area: AreaOfInterest, settings: Settings) -> Obje
     if length_px < settings.minimum_axis_px:
         advice = f"what stands out in the area is only {length_px:.0f} px long; draw the axis by hand or come nearer"
         return FitFailure(FailureReason.NO_AXIS, advice)
-    return ObjectAxis((float(start[0]), float(start[1])), (float(end[0]), float(end[1])))
+    # to a tenth of a pixel, so that the stroke is the same when it is told and given back
+    (u0, v0), (u1, v1) = np.round([start, end], 1).tolist()
+    return ObjectAxis((u0, v0), (u1, v1))
 
 
 @dataclass(frozen=True, eq=False)
@@ -116,10 +118,10 @@ def _shape(found: Foreground) -> _Shape:
 def _axis_line(found: Foreground, camera: PinholeCamera) -> tuple[Floats, Floats, float]:
     """A place (2,) on the axis in the frame, its direction (2,), and the object's width across it, px."""
     shape = _shape(found)
-    along = runs_along(found, camera) if shape.straight_and_hollow else None
-    if along is not None:
-        (low,), (high,) = shape.span(_across(along[None]))
-        return shape.middle_px, along, float(high - low)
+    line = straight_line(found, camera) if shape.straight_and_hollow else None
+    if line is not None:
+        (low,), (high,) = shape.span(_across(line[1][None]))
+        return *line, float(high - low)
     turn_rad, shift = _most_symmetric(shape, Mirror.of(found, shape.relief, camera))
     fan = _fan(shape, np.array([turn_rad]), np.array([shift]))
     return fan.places_px[0, 0], fan.along[0], float(fan.width_px[0])

@@ -10,8 +10,8 @@ from rotrecon.planes import least_squares
 
 SPAN = (0.02, 0.98)
 """Quantiles of pixels that count as an object's ends: what hangs off it is less."""
-INSET = 0.05
-"""Share of the length that a stroke ends before each end, where outlines are smeared."""
+INSET = 0.08
+"""Share of the length that a stroke ends before each end, where outlines are smeared and feet meet the table."""
 BINS = 40
 """Pieces of the line over the surface: a corner between cap and side is found to 2.5 % of the length."""
 FEWEST_BINS = 3

@@ -128,7 +128,7 @@ def test_hole_in_depth_does_not_cut_a_thin_thing():
     depth[:, 150:158] = np.nan
     frame = replace(exact_frame(solid), points_m=CAMERA.cloud(depth))
     stroke = proposed(frame, area_round(solid))
-    assert stroke.end_px[0] - stroke.start_px[0] > 0.85 * 0.3 * CAMERA.focal_px / 0.8
+    assert stroke.end_px[0] - stroke.start_px[0] > 0.8 * 0.3 * CAMERA.focal_px / 0.8
 
 
 def test_nearest_of_two_things_is_stroked():

@@ -1,4 +1,5 @@
 import json
+import re
 import sys
 from pathlib import Path
 from typing import get_args
@@ -203,3 +204,14 @@ def test_serve_refuses_a_host_that_is_not_this_machine(rotrecon, scene):
         assert code == 2
         assert host in err
         assert err.count("\n") == 1
+
+
+def test_fit_proposes_the_axis_that_is_left_out_and_says_so(rotrecon, scene):
+    area = drawing_of(scene)[:2]
+    code, out, _ = rotrecon("fit", scene, *area)
+    proposed = re.search(r'axis proposed: --axis "(.*)"', out)
+    assert code == 0
+    assert proposed is not None
+    again = rotrecon("fit", scene, *area, "--axis", proposed.group(1))[1]
+    assert "axis proposed" not in again
+    assert again.splitlines()[0] == out.splitlines()[0], "the proposed axis, given, measures the same"
