@@ -22,9 +22,11 @@ LARGEST_WINDOW_PX = 11
 ROUGHER = 1.1
 """Depths that err in one way alone do not become rougher toward the limbs by more than this, and by chance."""
 CHANCE, SUSPICION = 2.5, 1.0
-"""Standard deviations by which a size may differ from that of the inner depths; and where limbs are known to mislead."""
+"""Standard deviations by which a size may differ from that of the inner depths, and where limbs are seen to mislead."""
 CORRECTION_DOUBT = 0.25
 """Standard deviation of what one way to a size changes, over the change: neither way is without error."""
+DECISIVE = 1.03
+"""Ratio of their roughness at which the limbs themselves decide between windows and none."""
 FEWEST_INDEPENDENT = 8.0
 """Inner depths that are fewer than that can judge nothing."""
 
@@ -51,12 +53,14 @@ def settle(surface: Surface, task: Task) -> RayFit | None:
     window_px = _odd(WINDOW_OVER_CORRELATION * max(whole.likeness.length_px, task.patch.noise.correlation_px))
     windowed = _fit(surface, task, Sight(window_px)) if 3 <= window_px <= LARGEST_WINDOW_PX else None
     smoothest = min((fit for fit in (whole, windowed) if fit), key=lambda fit: fit.sigma)
-    if inner is None or _agrees(smoothest, inner, CHANCE):
+    roughest = max((fit for fit in (whole, windowed) if fit), key=lambda fit: fit.sigma)
+    chance = np.inf if roughest.sigma > DECISIVE * smoothest.sigma else CHANCE
+    if inner is None or _agrees(smoothest, inner, chance):
         return smoothest if smoothest is whole else doubting(smoothest, whole)
     best, narrow, wide = inner, 0, len(GUARDS)
     while narrow < wide:
         middle = (narrow + wide) // 2
-        guarded = _fit(inner.surface, task, Sight(guard=GUARDS[middle]))
+        guarded = _fit(whole.surface, task, Sight(guard=GUARDS[middle]))
         if guarded is not None and _agrees(guarded, inner, SUSPICION):
             best, narrow = guarded, middle + 1
         else:
@@ -74,7 +78,7 @@ def _agrees(fit: RayFit, inner: RayFit, chance: float) -> bool:
     rougher = fit.sigma > inner.sigma * (ROUGHER + 0.5 / np.sqrt(2.0 * independent))
     variance = np.maximum(np.diag(inner.covariance) - np.diag(fit.covariance), 0.0)[_size_of(fit)]
     apart = abs(fit.surface.size_m - inner.surface.size_m)
-    return not rougher and bool(apart <= chance * np.sqrt(variance) + 1e-6)
+    return not rougher and (np.isinf(chance) or bool(apart <= chance * np.sqrt(variance) + 1e-6))
 
 
 def doubting(fit: RayFit, other: RayFit) -> RayFit:

@@ -19,6 +19,9 @@ CLEAR_SHARE = 0.25
 """Of an outline, below which what is seen of the mask's edge says little."""
 OUTLINE_SECTIONS, OUTLINE_REACH = 241, 1.5
 """Heights at which the outline is looked for, and how far to both sides of the middle, in lengths of the stroke."""
+BLUR_DOUBT, PIXEL_BLUR_PX = 0.5, 0.4
+"""Standard deviation of where the outline lies in a smeared edge, over the smear, and the blur of pixels alone: focus,
+compression and what a limb reflects smear it more."""
 FEWEST_LIMBS = 12
 """Fewer limb points are no outline."""
 REACH_SHARE, LEAST_REACH_PX, MOST_REACH_PX = 0.25, 4.0, 10.0
@@ -53,7 +56,7 @@ class Limbs:
 
 
 def limbs_of(surface: Surface, patch: Patch, heights_m: Floats) -> Limbs:
-    """Limb points of a surface, of a lateral one at heights (n,) along its axis; those outside the picture are left out.
+    """Limb points of a surface, of a lateral one at heights (n,) along its axis; outside the picture they are left out.
 
     At a limb the surface's normal is square to the ray.
     """
@@ -173,4 +176,8 @@ def seen_outline(surface: Surface, patch: Patch, segments: CrossSegments, length
     if not usable.any():
         return nothing
     place = limbs.point_px[usable] + found.offset_px[usable, None] * limbs.normal_px[usable]
-    return SeenOutline(outline_at(place, found.sigma_px[usable], patch), int(trusted.sum()))
+    number = np.searchsorted(np.unique(limbs.side), limbs.side[usable])
+    blur_px = np.array([side.blur_px for side in found.sides])[number]
+    smeared_px = BLUR_DOUBT * np.sqrt(np.maximum(blur_px**2 - PIXEL_BLUR_PX**2, 0.0))
+    sigma_px = np.sqrt(found.sigma_px[usable] ** 2 + np.bincount(number)[number] * smeared_px**2)
+    return SeenOutline(outline_at(place, sigma_px, patch), int(trusted.sum()))

@@ -129,9 +129,10 @@ def fine(
     outlines: tuple[tuple[Outline, float], ...] = (),
 ) -> RayFit | None:
     """Rounds over the pixels within the outline and close to it; None when there are too few to hold the parameters."""
-    share, size_m = 1.0, surface.size_m
+    share, size_m, judge = 1.0, surface.size_m, surface
     for _ in range(FINE_ROUNDS):
-        pixels = near(surface, patch, patch.drawn & np.isfinite(patch.depth_m), sight)
+        # a guard that followed the surface would let it shrink away from what does not fit
+        pixels = near(judge if sight.guard < 1 else surface, patch, patch.drawn & np.isfinite(patch.depth_m), sight)
         if sight.window_px == 1:
             pixels = spread(pixels, max(int(OVERSAMPLED * share * len(pixels)), LEAST_PIXELS))
         if len(pixels) < 2 * len(units):

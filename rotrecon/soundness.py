@@ -28,7 +28,7 @@ class Soundness:
     inlier_share: float
     """Of the known depths inside the outline, those that agree."""
     roughness: float
-    """Spread of the depths that agree, along the ray, over the radius."""
+    """Spread of the depths that agree, along the ray, over the radius, as far as neighbours deviate alike."""
     arc_rad: float
     """How far round the axis depths agree."""
     ended: tuple[float, float]
@@ -57,12 +57,18 @@ def soundness_of(fit: RayFit, patch: Patch, heights_m: tuple[float, float]) -> S
     ended, goes_on = _beyond(fit, patch, heights_m)
     return Soundness(
         inlier_share=float(agreeing.sum() / max(known.sum(), 1)),
-        roughness=float(np.median(sigma_m[agreeing])) / surface.size_m if agreeing.any() else np.inf,
+        roughness=_roughness(fit, sigma_m[agreeing]),
         arc_rad=_arc(fit, points[:, agreeing]),
         ended=ended,
         goes_on=goes_on,
         agreeing=agreeing,
     )
+
+
+def _roughness(fit: RayFit, sigma_m: Floats) -> float:
+    if len(sigma_m) == 0:
+        return np.inf
+    return float(np.sqrt(fit.likeness.alike) * np.median(sigma_m)) / fit.surface.size_m
 
 
 def _arc(fit: RayFit, points: Floats) -> float:
