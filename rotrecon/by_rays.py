@@ -65,9 +65,11 @@ def by_rays(segmented: Reconstruction, depth_m: Cloud) -> Reconstruction:
     excluded = [number for number in drawing.excluded_sections if 0 <= number < len(radii.circles.state)]
     if excluded:
         found = _find(replace(scene, patch=_without(patch, radii, excluded)), held, segmented)
-        if isinstance(found, FitFailure):
-            return replace(segmented, fit=found, sections=radii.sections)
         radii = radii.excluding(excluded)
+        if isinstance(found, FitFailure):
+            many = f"{len(excluded)} of {len(radii.heights_m)} sections are excluded by hand; put some of them back"
+            failure, left = FitFailure(found.reason, many), Cut(radii.circles, None)
+            return replace(segmented, fit=failure, sections=radii.sections, second_cut=left)
     return _reconstruction(segmented, found, radii, scene)
 
 
@@ -102,7 +104,7 @@ def _find(scene: Scene, held: Held, segmented: Reconstruction) -> _Found | FitFa
 
 def _sections(found: _Found, patch: Patch, segmented: Reconstruction) -> SectionRadii:
     """As many sections as the drawing has, across the axis, through the depths that agree."""
-    pixels = patch.frame_pixels(np.flatnonzero(found.soundness.agreeing))
+    pixels = patch.frame_pixels(np.flatnonzero(found.soundness.agreeing).astype(np.int32))
     count = len(segmented.segments.pixel)
     assert found.chosen.fit is not None
     return section_radii(found.chosen.fit, found.axis, pixels, segmented.frame.points_m, count, segmented.settings)

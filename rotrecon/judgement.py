@@ -22,6 +22,9 @@ def too_little(scene: Scene, reachable: bool, settings: Settings) -> FitFailure 
     if not reachable:
         advice = "everything in the area is outside the arm's limits; move the arm or the limits"
         return FitFailure(FailureReason.OUT_OF_REACH, advice)
+    if len(scene.segments.pixel) < settings.minimum_axis_px:
+        advice = f"the axis is only {len(scene.segments.pixel)} px long; draw it along the whole object"
+        return FitFailure(FailureReason.TOO_FEW_SECTIONS, advice)
     if sections < settings.minimum_axis_px or len(scene.pixels) < settings.minimum_pixels:
         advice = f"only {sections} sections and {len(scene.pixels)} pixels show an object; {DRAW_CLOSE}"
         return FitFailure(FailureReason.TOO_FEW_SECTIONS, advice)
