@@ -17,6 +17,8 @@ UNKNOWN_TO_PAPER = [
     "margin", "interval_mm", "length_interval_mm", "ends", "center_interval_mm", "axis_interval_deg",
     "half_angle_interval_deg", "inlier_share", "sigma_over_radius", "noise",
 ]  # fmt: skip
+OF_SOME_THINGS = ["length_interval_mm", "half_angle_interval_deg"]
+"""Of a closed length, and of a cone."""
 FIELDS = [
     "kind", "certain", "margin", "concave", "diameter_mm", "interval_mm", "length_mm", "length_interval_mm", "ends",
     "center_m", "center_interval_mm", "axis", "axis_interval_deg", "half_angle_deg", "half_angle_interval_deg",
@@ -25,21 +27,29 @@ FIELDS = [
 ]  # fmt: skip
 
 
-def answer_for(solid, kind=None):
-    return answer(reconstruct(exact_frame(solid), drawing_along(solid, 0.7, kind=kind), Settings()))
+ROBUST, PAPER = Settings(), Settings(method="paper")
+by_both = pytest.mark.parametrize("method", [ROBUST, PAPER], ids=["robust", "paper"])
 
 
-def test_answers_have_every_field_and_are_strict_json():
+def answer_for(solid, method=ROBUST):
+    return answer(reconstruct(exact_frame(solid), drawing_along(solid, 0.7), method))
+
+
+@by_both
+def test_answers_have_every_field_and_are_strict_json(method):
     wall = Frame(np.zeros((240, 320, 3), np.uint8), CAMERA.cloud(np.full((240, 320), 1.0)), CAMERA)
     drawing = Drawing(AreaOfInterest.rectangle((60, 60), (260, 190)), ObjectAxis((160, 70), (160, 180)))
     body = cylinder(np.array([0, 0, 0.8]), np.array([0, 1.0, 0.3]), 0.08)
-    for content in (answer_for(body), answer(reconstruct(wall, drawing, Settings())), cannot("no", "paper")):
+    ball = Sphere(np.array([0, 0, 0.8]), np.array([0, 1.0, 0]), 0.1)
+    refused = answer(reconstruct(wall, drawing, method))
+    for content in (answer_for(body, method), answer_for(ball, method), refused, cannot("no", method.method)):
         assert sorted(content) == sorted(FIELDS)
         assert json.loads(json.dumps(content, allow_nan=False)) == content
 
 
-def test_cylinder_in_numbers():
-    content = answer_for(cylinder(np.array([0, 0, 0.8]), np.array([0, 1.0, 0.3]), 0.08))
+@by_both
+def test_cylinder_in_numbers(method):
+    content = answer_for(cylinder(np.array([0, 0, 0.8]), np.array([0, 1.0, 0.3]), 0.08), method)
     assert content["kind"] == "cylinder"
     assert content["diameter_mm"] == pytest.approx(80, rel=1e-3)
     assert content["axis"]["direction"] == pytest.approx(np.array([0, 1, 0.3]) / np.hypot(1, 0.3), abs=1e-3)
@@ -54,15 +64,30 @@ def test_cylinder_in_numbers():
 
 
 def test_paper_method_claims_no_certainty():
-    content = answer_for(cylinder(np.array([0, 0, 0.8]), np.array([0, 1.0, 0.3]), 0.08))
+    content = answer_for(cylinder(np.array([0, 0, 0.8]), np.array([0, 1.0, 0.3]), 0.08), PAPER)
+    assert content["method"] == "paper"
     assert content["certain"] is False
     assert [name for name in UNKNOWN_TO_PAPER if content[name] is not None] == []
     assert all(candidate["interval_mm"] is None for candidate in content["candidates"])
 
 
-def test_intervals_in_millimetres_and_degrees():
+def test_robust_method_says_what_it_rests_on():
+    content = answer_for(cylinder(np.array([0, 0, 0.8]), np.array([0, 1.0, 0.3]), 0.08))
+    assert content["certain"] is True
+    known = [name for name in UNKNOWN_TO_PAPER if content[name] is not None]
+    assert known == [name for name in UNKNOWN_TO_PAPER if name not in OF_SOME_THINGS]
+    assert content["inlier_share"] > 0.99
+    assert content["noise"]["stated"] is False
+    assert content["ends"] == {"start": "open", "end": "open"}, "the stroke and the area end before the body"
+    assert [candidate["possible"] for candidate in content["candidates"]] == [True, False, False]
+    assert 0.5 < content["margin"] <= 1
+    assert all(low <= diameter <= high for _, diameter, low, high in content["profile"])
+
+
+@by_both
+def test_intervals_in_millimetres_and_degrees(method):
     body = cone(np.array([0, 0, 0.7]), np.array([0, 1.0, 0]), 0.1, 12, 0.2)
-    result = reconstruct(exact_frame(body), drawing_along(body, 0.7), Settings())
+    result = reconstruct(exact_frame(body), drawing_along(body, 0.7), method)
     assert isinstance(result.fit, Fit)
     intervals = Intervals((0.09, 0.11), 0.002, np.radians(1.0), (np.radians(11.0), np.radians(13.0)), (0.19, 0.21))
     content = answer(replace(result, fit=replace(result.fit, intervals=intervals)))
@@ -74,15 +99,18 @@ def test_intervals_in_millimetres_and_degrees():
     assert sorted(content) == sorted(FIELDS)
 
 
-def test_sphere_has_no_axis_and_a_cone_has_an_angle():
-    ball = answer_for(Sphere(np.array([0, 0, 0.8]), np.array([0, 1.0, 0]), 0.1))
+@by_both
+def test_sphere_has_no_axis_and_a_cone_has_an_angle(method):
+    ball = answer_for(Sphere(np.array([0, 0, 0.8]), np.array([0, 1.0, 0]), 0.1), method)
     assert (ball["kind"], ball["axis"], ball["length_mm"]) == ("sphere", None, None)
-    body = answer_for(cone(np.array([0, 0, 0.7]), np.array([0, 1.0, 0]), 0.1, 12, 0.2))
+    assert ball["ends"] is ball["axis_interval_deg"] is None
+    body = answer_for(cone(np.array([0, 0, 0.7]), np.array([0, 1.0, 0]), 0.1, 12, 0.2), method)
     assert body["kind"] == "cone"
     assert body["half_angle_deg"] == pytest.approx(12, abs=0.3)
 
 
-def test_rod_is_called_so_among_the_candidates():
-    content = answer_for(cylinder(np.array([0, 0, 0.6]), np.array([0, 1.0, 0]), 0.02, 0.3))
+@by_both
+def test_rod_is_called_so_among_the_candidates(method):
+    content = answer_for(cylinder(np.array([0, 0, 0.6]), np.array([0, 1.0, 0]), 0.02, 0.3), method)
     assert content["kind"] == "rod"
     assert content["candidates"][0]["kind"] == "rod"
