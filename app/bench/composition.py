@@ -45,7 +45,7 @@ class Radii:
 
 
 def compose(frame: Frame, drawing: Drawing, settings: Settings, steps: Steps) -> Radii:
-    """The radii of an object whose kind the drawing names; `reconstruct` gives the same with `Steps()`."""
+    """The radii of an object whose kind the drawing names; with `Steps()` those that the paper's method finds."""
     pixel, kept = _object_pixels(frame, drawing, settings, steps)
     tolerance = settings if steps.reject else replace(settings, distance_floor_m=np.inf)
     first = circumcircles(*base_points(frame.points_m, pixel, kept), settings)

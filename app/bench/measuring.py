@@ -14,7 +14,7 @@ from rotrecon.outcome import Fit
 from rotrecon.reconstruct import reconstruct
 from rotrecon.settings import Settings
 
-SETTINGS = Settings()
+SETTINGS = Settings(method="paper")
 
 
 @dataclass(frozen=True, eq=False)
@@ -61,7 +61,7 @@ def measure(object_name: str, count: int) -> Measured:
 
 
 def by_program(frame: Frame, drawing: Drawing) -> Radii:
-    """The radii as `reconstruct` gives them."""
+    """The radii as `reconstruct` gives them by the paper's method."""
     result = reconstruct(frame, drawing, SETTINGS)
     if not isinstance(result.fit, Fit):
         return Radii()

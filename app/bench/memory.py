@@ -3,17 +3,18 @@
 import tracemalloc
 
 from app.bench.frames import Task
-from app.bench.stages import SETTINGS, finished
+from app.bench.stages import finished
 from rotrecon.reconstruct import reconstruct
+from rotrecon.settings import Settings
 
 
-def peak_bytes(task: Task) -> int:
+def peak_bytes(task: Task, settings: Settings) -> int:
     """Most memory that `reconstruct` holds at once on a loaded frame, after a first run."""
-    finished(task)
+    finished(task, settings)
     tracemalloc.start()
     try:
         before = tracemalloc.get_traced_memory()[0]
-        reconstruct(task.frame, task.drawing, SETTINGS)
+        reconstruct(task.frame, task.drawing, settings)
         return tracemalloc.get_traced_memory()[1] - before
     finally:
         tracemalloc.stop()

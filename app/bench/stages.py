@@ -1,4 +1,4 @@
-"""How long the program takes: from a drawing to the Reconstruction, as a whole and stage by stage."""
+"""How long a measurement takes: from a drawing to the Reconstruction, and the paper's method stage by stage."""
 
 import time
 from collections.abc import Callable
@@ -18,7 +18,7 @@ from rotrecon.section_fit import fit_solid
 from rotrecon.segmentation import segment
 from rotrecon.settings import Settings
 
-SETTINGS = Settings()
+PAPER, ROBUST = Settings(method="paper"), Settings(method="robust")
 WARM_UPS = 3
 
 
@@ -42,16 +42,16 @@ def median_ms(work: Callable[[], object], runs: int) -> float:
     return 1000 * float(np.median(durations))
 
 
-def finished(task: Task) -> Reconstruction:
+def finished(task: Task, settings: Settings) -> Reconstruction:
     """The Reconstruction of a task that is known to succeed."""
-    result = reconstruct(task.frame, task.drawing, SETTINGS)
+    result = reconstruct(task.frame, task.drawing, settings)
     assert isinstance(result.fit, Fit), result.fit
     return result
 
 
 def stage_timings(task: Task, runs: int) -> list[Timing]:
     """Each stage of the paper's method alone, on what the stages before it made of a task."""
-    return [Timing(name, median_ms(work, runs)) for name, work in _stages(finished(task)).items()]
+    return [Timing(name, median_ms(work, runs)) for name, work in _stages(finished(task, PAPER)).items()]
 
 
 def _stages(result: Reconstruction) -> dict[str, Callable[[], object]]:
@@ -64,24 +64,24 @@ def _stages(result: Reconstruction) -> dict[str, Callable[[], object]]:
     circles, axis, pixel = second.circles, second.axis, segments.pixel[kept]
     along = axis.along(circles.center_m)
     ends_m = (float(np.nanmin(along)), float(np.nanmax(along)))
-    curves = {shape: fit_radii(shape, along, circles.radius_m, circles.used, SETTINGS) for shape in SHAPES}
+    curves = {shape: fit_radii(shape, along, circles.radius_m, circles.used, PAPER) for shape in SHAPES}
     cylinder = curves["cylinder"]
     assert cylinder is not None
     size_px = (frame.camera.width, frame.camera.height)
     return {
         "cross segments (3.1)": lambda: cut_sections(drawing.area, drawing.stroke, size_px),
-        "segmentation (3.2)": lambda: segment(depth_m, usable, segments.inside, SETTINGS),
+        "segmentation (3.2)": lambda: segment(depth_m, usable, segments.inside, PAPER),
         "circles of the first cut (3.3)": lambda: circumcircles(
-            *base_points(frame.points_m, segments.pixel, kept), SETTINGS
+            *base_points(frame.points_m, segments.pixel, kept), PAPER
         ),
-        "axis (3.4)": lambda: fit_axis(first.circles, SETTINGS),
+        "axis (3.4)": lambda: fit_axis(first.circles, PAPER),
         "one cut across the axis in space": lambda: cut_in_space(
             frame.points_m, pixel, axis, ends_m, len(circles.state)
         ),
-        "its circles (3.3)": lambda: circumcircles(*sections.base_points(), SETTINGS),
+        "its circles (3.3)": lambda: circumcircles(*sections.base_points(), PAPER),
         "curves through the radii (3.4, 3.5)": lambda: [
-            fit_radii(shape, along, circles.radius_m, circles.used, SETTINGS) for shape in SHAPES
+            fit_radii(shape, along, circles.radius_m, circles.used, PAPER) for shape in SHAPES
         ],
-        "solid, its deviation and its arc": lambda: fit_solid(cylinder, None, axis, circles, sections, SETTINGS),
-        "all, from drawing to Reconstruction": lambda: reconstruct(frame, drawing, SETTINGS),
+        "solid, its deviation and its arc": lambda: fit_solid(cylinder, None, axis, circles, sections, PAPER),
+        "all, from drawing to Reconstruction": lambda: reconstruct(frame, drawing, PAPER),
     }
