@@ -9,7 +9,7 @@ from rotrecon.axis import Axis, cut_in_space, fit_axis
 from rotrecon.circles import SectionCircles, SectionState
 from rotrecon.settings import Settings
 
-PAPER = Settings()
+PAPER = Settings(method="paper")
 
 
 def circles_at(centers):

@@ -6,7 +6,7 @@ from hypothesis import strategies as st
 from rotrecon.circles import SectionState, base_points, circumcircles
 from rotrecon.settings import Settings
 
-PAPER = Settings()
+PAPER = Settings(method="paper")
 coordinates = st.floats(-2, 2)
 
 

@@ -6,7 +6,7 @@ from hypothesis import strategies as st
 from rotrecon.radii import axis_length_radius, fit_radii
 from rotrecon.settings import Settings
 
-PAPER = Settings()
+PAPER = Settings(method="paper")
 ALONG = np.linspace(-0.05, 0.06, 40)
 ALL = np.ones(40, dtype=bool)
 
