@@ -90,10 +90,10 @@ def _best(scene: Scene, held: Held, starts: Sequence[Surface]) -> Surface:
     scouts = spread(scene.pixels, SCOUT_PIXELS)
     edges = None if scene.outline is None else scene.outline.chosen(spread(np.arange(len(scene.outline)), SCOUT_EDGES))
     found = [
-        coarse(start, scene.patch, scouts, start.units(scene.length_m), held.free(start), edges)[1] for start in starts
+        coarse(start, scene.patch, scouts, start.units(scene.length_m), held.free(start), edges) for start in starts
     ]
     best = min(found, key=lambda surface: coarse_cost(scene, surface)) if len(found) > 1 else found[0]
-    return coarse(best, scene.patch, scene.pixels, best.units(scene.length_m), held.free(best), scene.outline)[1]
+    return coarse(best, scene.patch, scene.pixels, best.units(scene.length_m), held.free(best), scene.outline)
 
 
 def coarse_cost(scene: Scene, surface: Surface) -> float:

@@ -1,6 +1,6 @@
 """One kind of surface fitted to a patch: coarse from a start, then fine, with the weight that each measurement has."""
 
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 
 import numpy as np
 
@@ -32,7 +32,9 @@ LAST_SCALE = 2.0
 """The coarse rounds end at this multiple of the noise."""
 OUTLINE_SCALE = 0.1
 """Scale of the outline's residuals over that of the depths in coarse rounds, at least one sigma."""
-COARSE_ITERATIONS, FINE_ITERATIONS, FINE_ROUNDS = 6, 8, 3
+FOLLOWED_PX, FOLLOWED_SHARE = (4.0, 1.0), 0.2
+"""Scales at which a surface first follows the edges, and the say that its depths have meanwhile."""
+COARSE_ITERATIONS, FOLLOWING_ITERATIONS, FINE_ITERATIONS, FINE_ROUNDS = 6, 12, 8, 3
 OVERSAMPLED, LEAST_PIXELS = 20.0, 2500
 """Pixels compared for each independent one, and at least: more would only repeat them."""
 SETTLED_SIZE = 1e-4
@@ -89,9 +91,14 @@ class RayFit:
 
 
 def coarse(
-    start: Surface, patch: Patch, pixels: Indices, units: Floats, free: Bools, outline: Outline | None
-) -> tuple[float, Surface]:
-    """Scale of what is left, and surface, after rounds over some pixels from a start down to that scale."""
+    start: Surface,
+    patch: Patch,
+    pixels: Indices,
+    units: Floats,
+    free: Bools,
+    outline: Outline | None,
+) -> Surface:
+    """A surface after rounds over some pixels, from a start down to the scale of what is left."""
     depths = depths_of(patch, pixels)
     measurements: list[Measurement] = [depths, *([outline] if outline is not None else [])]
     sigma_m = float(np.median(patch.noise.sigma_m(patch.depth_m[pixels])))
@@ -102,8 +109,19 @@ def coarse(
         surface = refined.surface
         left = TO_SIGMA * float(np.median(np.abs(depths.predict(surface).residual)))
         if max(left, LAST_SCALE) >= scale / 2:
-            return scale, surface
+            return surface
         scale = max(scale / SHRINK, left, LAST_SCALE)
+
+
+def follow(surface: Surface, patch: Patch, pixels: Indices, units: Floats, free: Bools, edges: Outline) -> Surface:
+    """A surface moved until its outline is where the edges are, some of its depths having a say."""
+    depths = depths_of(patch, pixels)
+    scale = max(robust_scale(depths.predict(surface).residual), LAST_SCALE)
+    outline = replace(edges, sigma_px=np.ones(len(edges)))
+    for edge_scale in FOLLOWED_PX:
+        weighting = [(scale, FOLLOWED_SHARE), (edge_scale, 1.0)]
+        surface = refine(surface, [depths, outline], weighting, cauchy, free, units, FOLLOWING_ITERATIONS).surface
+    return surface
 
 
 def coarse_pixels(patch: Patch, segments: CrossSegments, kept: Bools) -> Indices:

@@ -8,15 +8,17 @@ import numpy as np
 from rotrecon.fitting import tukey
 from rotrecon.guard import Outlines, Task, doubting, settle
 from rotrecon.hypotheses import Held, Scene, coarse_cost, hypotheses
-from rotrecon.limbs import seen_outline
+from rotrecon.limbs import SeenOutline, seen_outline
 from rotrecon.radii import Shape
-from rotrecon.ray_fit import RayFit, coarse, fine, predicted
-from rotrecon.surfaces import Surface
+from rotrecon.ray_fit import RayFit, fine, follow, predicted
+from rotrecon.surfaces import Lateral, Surface
 
 PARAMETERS: dict[Shape, int] = {"cylinder": 5, "cone": 6, "sphere": 4}
 HOPELESS = 2.0
 """Shapes whose coarse cost is so many times that of the best, and a little more, are not looked into any further."""
 LITTLE = 50.0
+OTHER_TAPERS_RAD = tuple(np.deg2rad([-7.0, 7.0]))
+"""Half angles that depths flattened at the limbs may have missed."""
 OUTLINE_ROUNDS = 2
 """The better the surface, the more of its outline is found."""
 
@@ -67,18 +69,30 @@ def rank(scene: Scene, held: Held) -> tuple[Ranked, ...]:
 
 
 def _outlines(scene: Scene, surfaces: list[Surface]) -> Outlines:
-    """The outline in the picture that is best seen from any of the surfaces."""
-    views = (seen_outline(surface, scene.patch, scene.segments, scene.length_m) for surface in surfaces)
-    seen = max(views, key=lambda one: one.rank)
+    """The outline in the picture that is best seen from any of the surfaces, or from one that tapers otherwise."""
+    seen = _best_seen(scene, surfaces)
+    if seen.sides < 2:
+        tapered = [
+            replace(surface, slope=surface.slope + float(np.tan(angle)), tapers=True)
+            for surface in surfaces[:1]
+            if isinstance(surface, Lateral)
+            for angle in OTHER_TAPERS_RAD
+        ]
+        seen = max(seen, _best_seen(scene, tapered), key=lambda one: one.rank)
     return () if seen.edges is None else ((seen.edges, 1.0),)
+
+
+def _best_seen(scene: Scene, surfaces: list[Surface]) -> SeenOutline:
+    views = [seen_outline(surface, scene.patch, scene.segments, scene.length_m) for surface in surfaces]
+    return max(views, key=lambda one: one.rank, default=SeenOutline(None, 0))
 
 
 def _followed(scene: Scene, held: Held, surface: Surface, outlines: Outlines) -> tuple[float, Surface]:
     """Cost and surface, once it has followed the outline."""
-    outline = outlines[0][0] if outlines else scene.outline
-    units = surface.units(scene.length_m)
-    _, surface = coarse(surface, scene.patch, scene.pixels, units, held.free(surface), outline)
-    return coarse_cost(replace(scene, outline=outline), surface), surface
+    edges = outlines[0][0]
+    units, free = surface.units(scene.length_m), held.free(surface)
+    surface = follow(surface, scene.patch, scene.pixels, units, free, edges)
+    return coarse_cost(replace(scene, outline=edges), surface), surface
 
 
 def _settled(scene: Scene, held: Held, surface: Surface, outlines: Outlines) -> RayFit | None:

@@ -13,7 +13,7 @@ FEWEST_PIXELS = 3
 """A section with fewer has no middle and no width worth the name."""
 ROBUST_ROUNDS = 8
 """Reweightings of a line or a circle: each halves what outliers pull, or better."""
-CONE_ANGLES_RAD = tuple(np.deg2rad([-40.0, -20.0, 20.0, 40.0]))
+CONE_ANGLES_RAD = tuple(np.deg2rad([-40.0, -25.0, -10.0, 10.0, 25.0, 40.0]))
 """Half angles of cones to start from; nearer ones are found from any of them, or from the cylinder."""
 CONE_ANGLE_HELD = 0.95
 """Cosine between a start's axis and a direction that is held, below which the start is of no use."""
@@ -93,9 +93,9 @@ def cone_starts(edge: Ridge, direction: Floats | None, focal_px: float) -> list[
 
 def ball_starts(edge: Ridge, points_m: Floats, focal_px: float) -> list[Ball]:
     """Balls from a ridge and the object's points (N, 3): by its greatest width, and through the points."""
-    widest = int(np.argmax(edge.width_m))
-    radius = max(float(edge.width_m[widest]) / 2, SMALLEST_M)
-    nearest = edge.points_m[widest]
+    third = len(edge.points_m) // 3
+    nearest = np.median(edge.points_m[third : len(edge.points_m) - third], axis=0)
+    radius = max(float(np.percentile(edge.width_m, 95)) / 2, SMALLEST_M)
     starts = [Ball(nearest * (1 + radius / np.linalg.norm(nearest)), radius, focal_px)]
     sphere = robust_circle(points_m - nearest)
     if sphere is not None:
