@@ -17,7 +17,7 @@ BAND = "rgba(0, 158, 115, 0.3)"
 """The same green, for the interval round the fitted line."""
 CHART_HEIGHT_PX = 132
 BOTTOM = 0.04
-"""How far up the chart sections without a circle stand: high enough to be seen whole."""
+"""How far up the chart sections without a radius stand: high enough to be seen whole."""
 
 
 def _dots(label: str, color: str, size_px: float) -> dict[str, Any]:
@@ -33,7 +33,7 @@ RADIUS_SERIES: tuple[Any, ...] = (
     _dots("used", USED, 4),
     _dots("odd radius", ODD, 4),
     _dots("excluded", EXCLUDED, 5),
-    _dots("no circle", MISSING, 4),
+    _dots("no radius", MISSING, 4),
     _dots("chosen", LIT, 10),
 )
 RADIUS_BANDS: tuple[Any, ...] = ({"series": (1, 2), "fill": BAND},)
@@ -54,13 +54,14 @@ def section_count(result: Reconstruction | None) -> int:
 def radius_chart(result: Reconstruction | None, section: int) -> tuple[Floats, ...]:
     """Columns of the chart: position and radius, mm, NaN where a section is not of the series.
 
-    Sections without a circle have no radius; they stand in a row at the bottom.
+    Sections without a radius stand in a row at the bottom.
     """
     if result is None or result.second_cut is None or result.sections is None:
         return NO_CHART
     circles, fit = result.second_cut.circles, result.fit
-    along_m = fit.along_m if isinstance(fit, Fit) else result.sections.axis.along(circles.points_m[:, 1])
-    along_mm, radius_mm = 1000 * _evenly(along_m), 1000 * circles.radius_m
+    even_m = _evenly(fit.along_m if isinstance(fit, Fit) else result.sections.axis.along(circles.points_m[:, 1]))
+    along_m = np.where(np.isfinite(fit.along_m), fit.along_m, even_m) if isinstance(fit, Fit) else even_m
+    along_mm, radius_mm = 1000 * along_m, 1000 * circles.radius_m
     order = np.argsort(along_mm)
     if len(order) < 2 or not np.isfinite(along_mm).all():
         return NO_CHART
@@ -90,12 +91,11 @@ def _interval(result: Reconstruction, along_mm: Floats) -> tuple[Floats, Floats]
 
 
 def _evenly(along_m: Floats) -> Floats:
-    """Positions (S,) of sections with those that are not known put in, as sections lie evenly; NaN if none can be."""
+    """Positions (S,) on the line through those that are known, as sections lie evenly; NaN if there is none."""
     number, known = np.arange(len(along_m)), np.isfinite(along_m)
     if known.sum() < 2:
         return np.full(len(along_m), np.nan)
-    line = np.polyfit(number[known], along_m[known], 1)
-    return np.where(known, along_m, np.polyval(line, number))
+    return np.asarray(np.polyval(np.polyfit(number[known], along_m[known], 1), number), dtype=np.float64)
 
 
 def radius_scales(chart: tuple[Floats, ...]) -> dict[str, Any]:
