@@ -1,0 +1,68 @@
+"""What keeps the profile of a turned surface smooth, and how strongly, which the data choose."""
+
+from dataclasses import dataclass, replace
+
+import numpy as np
+
+from rotrecon.arrays import Bools, Floats, Indices, freeze
+from rotrecon.fitting import Prediction
+from rotrecon.surfaces import Surface
+from rotrecon.turned import AXIS_PARAMETERS, Turned
+
+UNBENT = (100.0, 100.0**2)
+"""Sigma and independent share of the prior for the robust loop: no loss bends residuals that small, and their cost
+stays that of their square."""
+LEAST_SCALE_M = 1e-5
+"""A bend that nothing could measure."""
+
+
+@dataclass(frozen=True, eq=False)
+class Smoothness:
+    """The prior that second differences of a turned surface's coefficients are small (P-splines, Eilers, Marx 1996)."""
+
+    scale_m: float
+    """Standard deviation of a second difference."""
+    rows: Indices
+    """(n,) which of the K - 2 are asked for."""
+
+    @staticmethod
+    def of(surface: Turned, scale_m: float) -> "Smoothness":
+        """That of all second differences of a surface."""
+        return Smoothness(scale_m, np.arange(len(surface.coefficients_m) - 2, dtype=np.int32))
+
+    def __post_init__(self) -> None:
+        freeze(self)
+
+    def __len__(self) -> int:
+        return len(self.rows)
+
+    def predict(self, surface: Surface) -> Prediction:
+        """Second differences; what is seen is none. Raises TypeError for a surface that has no coefficients."""
+        if not isinstance(surface, Turned):
+            raise TypeError("only a turned surface has a profile to be smooth")
+        differences = second_differences(len(surface.coefficients_m))[self.rows] / self.scale_m
+        axis = np.zeros((AXIS_PARAMETERS, len(self.rows)))
+        return Prediction(-differences @ surface.coefficients_m, np.concatenate([axis, differences.T]))
+
+    def chosen(self, index: Indices | Bools) -> "Smoothness":
+        """Some of the differences."""
+        return replace(self, rows=self.rows[index])
+
+
+def second_differences(count: int) -> Floats:
+    """(count - 2, count) matrix."""
+    return np.diff(np.eye(count), 2, axis=0)
+
+
+def next_scale(surface: Turned, information: Floats, scale_m: float, free: Bools) -> float:
+    """The prior's scale at which its bends are as large as it expects them (Wood and Fasiolo 2017, Fellner-Schall).
+
+    tau^2 = |D c|^2 / (rank - tr(H^-1 S)), with S = D'D / tau^2 that part of the information H that is the prior's.
+    """
+    differences = second_differences(len(surface.coefficients_m))
+    prior = np.zeros_like(information)
+    prior[AXIS_PARAMETERS:, AXIS_PARAMETERS:] = differences.T @ differences / scale_m**2
+    kept = np.ix_(free, free)
+    held = float(np.trace(np.linalg.pinv(information[kept], hermitian=True) @ prior[kept]))
+    bends = float(np.square(differences @ surface.coefficients_m).sum())
+    return max(float(np.sqrt(bends / max(len(differences) - held, 1e-6))), LEAST_SCALE_M)
