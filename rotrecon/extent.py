@@ -28,6 +28,8 @@ COVER_ANGLES_RAD = np.linspace(-0.9, 0.9, 9)
 """Places round the visible side at which a height is asked whether it lies in the area."""
 FEWEST_PIXELS = 12
 """Fewer that agree are no surface."""
+MOST_STEPS = 4000
+"""Places along an axis that are asked whether they lie in the area: more than any picture has rows."""
 FARTHEST_PX = 1e6
 """Stands for places far outside any picture."""
 NORMAL_95 = 1.96
@@ -131,7 +133,8 @@ def _walk(outward_m: Floats, off: Floats, limit: float, drop: float) -> _Walk:
 
 def _border(surface: Lateral, patch: Patch, start_m: float, way: int, farthest_m: float, pitch_m: float) -> float:
     """How far outward half of the visible side is still inside the area."""
-    outward_m = np.arange(0.0, farthest_m + pitch_m, pitch_m / 2)
+    steps = int(min(2 * farthest_m / pitch_m + 2, MOST_STEPS)) if pitch_m > 0 and np.isfinite(farthest_m) else 2
+    outward_m = np.linspace(0.0, farthest_m, steps) if np.isfinite(farthest_m) else np.zeros(2)
     height = start_m + way * outward_m
     across, toward, axis = surface.turn
     round_about = np.sin(COVER_ANGLES_RAD)[:, None] * across - surface.side * np.cos(COVER_ANGLES_RAD)[:, None] * toward

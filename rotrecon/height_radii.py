@@ -93,15 +93,18 @@ def looks_at(surface: Lateral, patch: Patch, heights_m: Floats, guard: float, mo
     middle = (heights_m[1:] + heights_m[:-1]) / 2
     within = (place_m[2] > 2 * heights_m[0] - middle[0]) & (place_m[2] < 2 * heights_m[-1] - middle[-1])
     seen = within & (-turned.side * place_m[1] > 0)
-    pixels, x, y, height = pixels[seen], place_m[0][seen], place_m[1][seen], place_m[2][seen]
-    out, (radius, slope) = np.hypot(x, y), turned.curve(height)
+    pixels, x, y = pixels[seen], place_m[0][seen], place_m[1][seen]
+    height: Floats = place_m[2][seen]
+    out = np.hypot(x, y)
+    radius, slope = turned.curve(height)
     off = out - radius
     close = np.abs(off) < CLOSE * radius + CLOSE_SIGMA * patch.noise.sigma_m(patch.depth_m[pixels])
     chosen = np.flatnonzero(close).astype(np.int32)
     every = len(chosen)
     if most is not None:
         chosen = spread(chosen, most)
-    pixels, height = pixels[chosen], height[chosen]
+    pixels = pixels[chosen]
+    height = height[chosen]
     return Looks(
         surface=turned,
         guard=min(guard, GUARD),
@@ -110,7 +113,7 @@ def looks_at(surface: Lateral, patch: Patch, heights_m: Floats, guard: float, mo
         share=len(chosen) / max(every, 1),
         steps=patch.noise.steps(patch.depth_m[pixels]),
         noise=patch.noise,
-        place=np.searchsorted(middle, height).astype(np.int32),
+        place=np.rint(np.interp(height, heights_m, np.arange(len(heights_m)))).astype(np.int32),
         count=len(heights_m),
         height=height,
         radius=radius[chosen],

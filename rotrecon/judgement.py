@@ -60,10 +60,10 @@ def failure_of(chosen: Ranked, soundness: Soundness, scene: Scene, settings: Set
 
 
 def _off_stroke(surface: Lateral, scene: Scene) -> float:
-    """Angle in space between the axis and the ridge of the object along the stroke, beyond a cone's half angle."""
+    """Angle in space between the ridge of the object along the stroke and the generator nearest to it."""
     along = robust_line(scene.ridge.points_m)[1]
     turned = float(np.arccos(np.clip(abs(along @ surface.direction), 0, 1)))
-    return turned - abs(float(np.arctan(surface.slope)))
+    return abs(turned - abs(float(np.arctan(surface.slope))))
 
 
 def doubts_of(
@@ -82,7 +82,12 @@ def doubts_of(
             f"only {100 * soundness.inlier_share:.0f} % of the depths agree with the {chosen.shape}; "
             "draw the area closer round one object"
         )
-    if chosen.surface.side < 0 and max(soundness.goes_on) > settings.doubtful_goes_on:
+    if soundness.pattern > settings.doubtful_pattern:
+        doubts.append(
+            f"what is seen is not as round as a {chosen.shape}, flats or edges remain; draw round one round part"
+        )
+    one_side, both_sides = max(soundness.goes_on), min(soundness.goes_on)
+    if one_side > settings.doubtful_goes_on or both_sides > settings.doubtful_goes_on / 2:
         doubts.append("the surface goes on beside the object; draw the axis along one object that stands alone")
     if soundness.arc_rad < settings.doubtful_arc_rad:
         doubts.append(

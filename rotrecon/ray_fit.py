@@ -34,7 +34,7 @@ OUTLINE_SCALE = 0.1
 """Scale of the outline's residuals over that of the depths in coarse rounds, at least one sigma."""
 FOLLOWED_PX, FOLLOWED_SHARE = (4.0, 1.0), 0.2
 """Scales at which a surface first follows the edges, and the say that its depths have meanwhile."""
-COARSE_ITERATIONS, FOLLOWING_ITERATIONS, FINE_ITERATIONS, FINE_ROUNDS = 6, 12, 8, 3
+COARSE_ITERATIONS, FOLLOWING_ITERATIONS, FINE_ITERATIONS, FINE_ROUNDS = 6, 10, 8, 3
 OVERSAMPLED, LEAST_PIXELS = 20.0, 2500
 """Pixels compared for each independent one, and at least: more would only repeat them."""
 SETTLED_SIZE = 1e-4

@@ -3,6 +3,7 @@
 from dataclasses import replace
 
 import numpy as np
+from threadpoolctl import ThreadpoolController
 
 from rotrecon.arrays import Bools, Cloud, blocks
 from rotrecon.axis_proposal import propose_axis
@@ -19,6 +20,8 @@ from rotrecon.section_fit import why_no_axis
 from rotrecon.segmentation import segment
 from rotrecon.settings import Settings
 from rotrecon.workspace import available
+
+THREADS = ThreadpoolController()
 
 
 def reconstruct(frame: Frame, drawing: Drawing, settings: Settings) -> Reconstruction:
@@ -37,7 +40,11 @@ def reconstruct(frame: Frame, drawing: Drawing, settings: Settings) -> Reconstru
     first = cut(*base_points(frame.points_m, segments.pixel, segmentation.kept), settings)
     why = why_no_axis(first.circles, bool(segmentation.history.any()), settings)
     segmented = Reconstruction(frame, drawing, settings, segments, segmentation, first, fit=why)
-    return by_rays(segmented, depth_m) if settings.method == "robust" else by_sections(segmented)
+    if settings.method == "paper":
+        return by_sections(segmented)
+    # matrices of a few columns are multiplied sooner by one thread than shared out between several
+    with THREADS.limit(limits=1, user_api="blas"):
+        return by_rays(segmented, depth_m)
 
 
 def _with_axis(frame: Frame, drawing: Drawing, settings: Settings) -> Drawing:

@@ -5,7 +5,7 @@ from operator import itemgetter
 
 import numpy as np
 
-from rotrecon.fitting import tukey
+from rotrecon.fitting import Outline, tukey
 from rotrecon.guard import Outlines, Task, doubting, settle
 from rotrecon.hypotheses import Held, Scene, coarse_cost, hypotheses
 from rotrecon.limbs import SeenOutline, seen_outline
@@ -18,7 +18,7 @@ HOPELESS = 2.0
 """Shapes whose coarse cost is so many times that of the best, and a little more, are not looked into any further."""
 LITTLE = 50.0
 OTHER_TAPERS_RAD = tuple(np.deg2rad([-7.0, 7.0]))
-"""Half angles that depths flattened at the limbs may have missed."""
+"""By which a surface may taper more or less than its depths have it."""
 OUTLINE_ROUNDS = 2
 """The better the surface, the more of its outline is found."""
 
@@ -43,13 +43,7 @@ def rank(scene: Scene, held: Held) -> tuple[Ranked, ...]:
     found = hypotheses(scene, held)
     limit = HOPELESS * min(cost for cost, _ in found.values()) + LITTLE
     promising = {shape: surface for shape, (cost, surface) in found.items() if cost <= limit}
-    outlines: Outlines = ()
-    followed = {shape: found[shape] for shape in promising}
-    for _ in range(OUTLINE_ROUNDS):
-        outlines = _outlines(scene, [surface for _, surface in sorted(followed.values(), key=itemgetter(0))])
-        if not outlines:
-            break
-        followed = {shape: _followed(scene, held, surface, outlines) for shape, (_, surface) in followed.items()}
+    outlines, followed = _following(scene, held, {shape: found[shape] for shape in promising})
     order = sorted(followed, key=lambda shape: followed[shape][0] + PARAMETERS[shape])
     lead = next((fit for shape in order if (fit := _settled(scene, held, followed[shape][1], outlines))), None)
     if lead is None:
@@ -68,28 +62,38 @@ def rank(scene: Scene, held: Held) -> tuple[Ranked, ...]:
     return (*(replace(one, cost=one.cost - best) for one in ranked), *out)
 
 
-def _outlines(scene: Scene, surfaces: list[Surface]) -> Outlines:
-    """The outline in the picture that is best seen from any of the surfaces, or from one that tapers otherwise."""
-    seen = _best_seen(scene, surfaces)
-    if seen.sides < 2:
-        tapered = [
-            replace(surface, slope=surface.slope + float(np.tan(angle)), tapers=True)
-            for surface in surfaces[:1]
-            if isinstance(surface, Lateral)
-            for angle in OTHER_TAPERS_RAD
-        ]
-        seen = max(seen, _best_seen(scene, tapered), key=lambda one: one.rank)
-    return () if seen.edges is None else ((seen.edges, 1.0),)
+def _following(
+    scene: Scene, held: Held, found: dict[Shape, tuple[float, Surface]]
+) -> tuple[Outlines, dict[Shape, tuple[float, Surface]]]:
+    """The outline in the picture, and the surfaces with their costs once they have followed it.
+
+    From a surface that has followed one side of it, the other may be seen too.
+    """
+    seen = SeenOutline(None, 0)
+    for _ in range(OUTLINE_ROUNDS):
+        order = [surface for _, surface in sorted(found.values(), key=itemgetter(0))]
+        for surface in (*order, *_tapered(order[0])):
+            if seen.sides == 2 or (seen.sides == 1 and surface not in order):
+                break
+            seen = max(
+                seen, seen_outline(surface, scene.patch, scene.segments, scene.length_m), key=lambda one: one.rank
+            )
+        if seen.edges is None:
+            return (), found
+        edges = seen.edges
+        found = {shape: _followed(scene, held, surface, edges) for shape, (_, surface) in found.items()}
+    return ((edges, 1.0),), found
 
 
-def _best_seen(scene: Scene, surfaces: list[Surface]) -> SeenOutline:
-    views = [seen_outline(surface, scene.patch, scene.segments, scene.length_m) for surface in surfaces]
-    return max(views, key=lambda one: one.rank, default=SeenOutline(None, 0))
+def _tapered(surface: Surface) -> list[Surface]:
+    """The surface with half angles that depths flattened at the limbs may have missed."""
+    if not isinstance(surface, Lateral):
+        return []
+    return [replace(surface, slope=surface.slope + float(np.tan(angle)), tapers=True) for angle in OTHER_TAPERS_RAD]
 
 
-def _followed(scene: Scene, held: Held, surface: Surface, outlines: Outlines) -> tuple[float, Surface]:
+def _followed(scene: Scene, held: Held, surface: Surface, edges: Outline) -> tuple[float, Surface]:
     """Cost and surface, once it has followed the outline."""
-    edges = outlines[0][0]
     units, free = surface.units(scene.length_m), held.free(surface)
     surface = follow(surface, scene.patch, scene.pixels, units, free, edges)
     return coarse_cost(replace(scene, outline=edges), surface), surface

@@ -65,13 +65,15 @@ class Settings:
     """Arcs of less than 20 degrees look flat."""
     shortest_arc_rad: float = 0.6
     """Arcs of less than 35 degrees hold no radius that could be relied on."""
-    most_off_stroke_rad: float = 0.6
-    """An axis that far (35 degrees) off the stroke is not that of the object that was meant."""
+    most_off_stroke_rad: float = 0.35
+    """A surface whose generator is that far (20 degrees) off the object's ridge is not that of the object meant."""
     least_inlier_share: float = 0.5
     """Of the depths inside the outline: fewer that agree make no object."""
     doubtful_inlier_share: float = 0.75
-    doubtful_goes_on: float = 0.5
-    """Share of one side's outline beyond which the surface goes on."""
+    doubtful_goes_on: float = 0.8
+    """Share of one side's outline beyond which the surface goes on, or half of it on both: a handle is less."""
+    doubtful_pattern: float = 0.05
+    """Residual that follows the angle, over the radius: real round things have 0.02, six-sided bars 0.053 and more."""
     widest_interval: float = 0.35
     """Width of the interval of the diameter over the diameter."""
     excluded_cost: float = 4.6

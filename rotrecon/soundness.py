@@ -18,6 +18,8 @@ BEYOND_PX = (3.0, 5.0, 7.0)
 """Outside the outline, where the object must have ended: farther than windows reach."""
 GOES_ON = 0.5
 """Radii behind the limb before which a pixel outside the outline still belongs to the same thing."""
+PATTERN_RAD, PATTERN_BINS, PATTERN_FEWEST = float(np.deg2rad(66.0)), 10, 5
+"""Angles that are compared, in so many bins of so many pixels at least: limbs have flaws of their own."""
 LIMBS = 80
 
 
@@ -29,6 +31,8 @@ class Soundness:
     """Of the known depths inside the outline, those that agree."""
     roughness: float
     """Spread of the depths that agree, along the ray, over the radius, as far as neighbours deviate alike."""
+    pattern: float
+    """How much of what is left follows the angle at which the surface is hit, over the radius: flats and edges do."""
     arc_rad: float
     """How far round the axis depths agree."""
     ended: tuple[float, float]
@@ -58,6 +62,7 @@ def soundness_of(fit: RayFit, patch: Patch, heights_m: tuple[float, float]) -> S
     return Soundness(
         inlier_share=float(agreeing.sum() / max(known.sum(), 1)),
         roughness=_roughness(fit, sigma_m[agreeing]),
+        pattern=_pattern(fit, points[:, known], (patch.depth_m - trace.depth_m)[known]),
         arc_rad=_arc(fit, points[:, agreeing]),
         ended=ended,
         goes_on=goes_on,
@@ -71,17 +76,33 @@ def _roughness(fit: RayFit, sigma_m: Floats) -> float:
     return float(np.sqrt(fit.likeness.alike) * np.median(sigma_m)) / fit.surface.size_m
 
 
-def _arc(fit: RayFit, points: Floats) -> float:
-    """Angle round the axis, or round the centre of a ball in its widest section, that points (3, n) span."""
+def _pattern(fit: RayFit, points: Floats, behind_m: Floats) -> float:
+    """Root mean square of the median residual (n,) of bins of the angle at which points (3, n) are hit."""
+    angle = _angle(fit, points)
+    widest = min(PATTERN_RAD, float(np.arcsin(min(fit.sight.guard, 1.0))))
+    edges = np.linspace(-widest, widest, PATTERN_BINS + 1)
+    number = np.digitize(angle, edges) - 1
+    bins = [behind_m[number == each] for each in range(PATTERN_BINS)]
+    medians = [float(np.median(one)) for one in bins if len(one) >= PATTERN_FEWEST]
+    return float(np.sqrt(np.mean(np.square(medians)))) / fit.surface.size_m if medians else np.inf
+
+
+def _angle(fit: RayFit, points: Floats) -> Floats:
+    """Angle (n,) round the axis of points (3, n), 0 toward the camera; of a ball from the line of sight."""
     surface = fit.surface
-    if points.shape[1] == 0:
-        return 0.0
     offset = points - surface.center_m[:, None]
     if isinstance(surface, Lateral):
-        angle = np.arctan2(surface.turn[0] @ offset, -surface.side * surface.turn[1] @ offset)
-    else:
-        toward = -surface.center_m / np.linalg.norm(surface.center_m)
-        angle = np.arccos(np.clip(toward @ offset / surface.radius_m, -1, 1))
+        return np.arctan2(surface.turn[0] @ offset, -surface.side * (surface.turn[1] @ offset))
+    toward = -surface.center_m / np.linalg.norm(surface.center_m)
+    return np.arccos(np.clip(toward @ offset / surface.radius_m, -1, 1))
+
+
+def _arc(fit: RayFit, points: Floats) -> float:
+    """Angle round the axis, or round the centre of a ball in its widest section, that points (3, n) span."""
+    if points.shape[1] == 0:
+        return 0.0
+    angle = _angle(fit, points)
+    if not isinstance(fit.surface, Lateral):
         return 2 * float(np.percentile(angle, 98))
     low, high = np.percentile(angle, [1, 99])
     return float(high - low)
