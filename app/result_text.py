@@ -77,7 +77,7 @@ def _tool(result: Reconstruction, content: dict[str, Any]) -> str:
 
 
 def why_html(session: Session) -> str:
-    """What the result rests on: first cut beside second cut, candidates, dropped sections, and every tool."""
+    """What the result rests on: candidates, noise, dropped sections, every tool, and the paper's two cuts."""
     result = session.reconstruction
     if result is None:
         return f'<div class="rr-why rr-dim">{escape(warning(session) or "Draw an area and an axis first.")}</div>'
@@ -97,16 +97,20 @@ def why_html(session: Session) -> str:
 
 
 def _evidence(result: Reconstruction, content: dict[str, Any]) -> list[tuple[str, str]]:
-    """What the diameter rests on: the other ways to it, the kinds considered, and how well it is known."""
-    first_mm = 0.0 if result.first_cut_radius_m is None else 2000 * result.first_cut_radius_m
-    last = "Across the axis in space" if content["method"] == "paper" else "Fitted to all pixels"
-    cuts = [("Across the drawn axis", first_mm), (last, content["diameter_mm"])]
-    diameters = _table([(name, f"{value:.1f} mm") for name, value in cuts if value])
+    """What the diameter rests on: the paper's other cut, the kinds considered, and how well it is known."""
     margin = "" if content["margin"] is None else f" (margin {content['margin']:.2g})"
     candidates = _table([candidate_row(candidate) for candidate in content["candidates"]])
-    blocks = [("Diameter by the cut", diameters), (f"Candidates, by score{margin}", candidates)]
+    blocks = [*_by_cut(result, content["diameter_mm"]), (f"Candidates, by score{margin}", candidates)]
     known = rests_on(content)
     return [*blocks, ("How well it is known", _table(known))] if known else blocks
+
+
+def _by_cut(result: Reconstruction, diameter_mm: float) -> list[tuple[str, str]]:
+    """The paper's two cuts side by side; nothing where there are none."""
+    if result.first_cut_radius_m is None:
+        return []
+    cuts = {"Across the drawn axis": 2000 * result.first_cut_radius_m, "Across the axis in space": diameter_mm}
+    return [("Diameter by the cut", _table([(name, f"{value:.1f} mm") for name, value in cuts.items()]))]
 
 
 def _doubts(result: Reconstruction) -> tuple[str, ...]:

@@ -27,7 +27,7 @@ def section_text(result: Reconstruction | None, section: int) -> str:
     if result is None:
         return "No sections yet."
     if result.second_cut is None or section >= count:
-        return "No sections: the lines of pixels gave no axis to cut the object across."
+        return f"No sections: {_why_none(result)} to cut the object across."
     state = result.fit.section_state if isinstance(result.fit, Fit) else result.second_cut.circles.state
     radius_mm = 1000 * float(result.second_cut.circles.radius_m[section])
     place = f"Section {section + 1} of {count}, {STATE_TEXT[SectionState(state[section])]}"
@@ -36,6 +36,11 @@ def section_text(result: Reconstruction | None, section: int) -> str:
     residuals_mm = 1000 * result.sections.residuals_m(section, result.second_cut.circles)
     off_mm = float(np.sqrt(np.mean(residuals_mm**2)))
     return f"{place}. Radius {radius_mm:.1f} mm; its {len(residuals_mm)} pixels lie {off_mm:.2f} mm off (RMS)."
+
+
+def _why_none(result: Reconstruction) -> str:
+    by_paper = result.settings.method == "paper"
+    return "the lines of pixels gave no axis" if by_paper else "nothing round was found"
 
 
 def line_text(result: Reconstruction | None, section: int) -> str:
@@ -50,7 +55,7 @@ def line_text(result: Reconstruction | None, section: int) -> str:
 
 
 def section_svg(result: Reconstruction | None, section: int) -> str:
-    """One section in its own plane: its points, the circle through S, C and F, and how far the points lie off it."""
+    """One section in its own plane: its points, its circle, and how far they lie off it; the paper's S, C and F."""
     if result is None or result.sections is None or result.second_cut is None or section >= section_count(result):
         return ""
     sections, circles = result.sections, result.second_cut.circles
@@ -68,7 +73,7 @@ def section_svg(result: Reconstruction | None, section: int) -> str:
     radius = 1000 * float(circles.radius_m[section])
     shapes = _fitted_circle(center, radius, drawn, dot) if np.isfinite(radius) else []
     shapes += [_circle(u, v, 0.8 * dot, f'fill="{USED}"') for u, v in drawn]
-    for name, (u, v) in zip("SCF", base, strict=True):
+    for name, (u, v) in zip("SCF", base, strict=True) if result.settings.method == "paper" else ():
         if np.isfinite(u):
             shapes += [_circle(u, v, 1.8 * dot, f'fill="{LIT}"'), _label(name, u, v - 2.8 * dot, 7 * dot)]
     box = " ".join(f"{value:.3f}" for value in (*corner, *size))

@@ -78,10 +78,8 @@ def test_the_hint_tells_of_a_measurement_only_when_it_is_one_of_the_drawing_show
 def test_thin_evidence_and_refusals_are_said_in_amber(measured: tuple[Session, Reconstruction]) -> None:
     good, result = measured
     assert "rr-amber" not in hint_html(good)
-    assert "not certain, no interval" in result_html(good)
     assert "doubtful" not in result_html(good)
     assert "Candidates, by score" in why_html(good)
-    assert "%" not in why_html(good)
     assert isinstance(result.fit, Fit)
     doubts = ("doubtful: only 3 of 90 sections have a circle", "doubtful: <noise>")
     thin = replace(result, fit=replace(result.fit, doubts=doubts), tool=NoTool(doubts))
@@ -96,6 +94,34 @@ def test_thin_evidence_and_refusals_are_said_in_amber(measured: tuple[Session, R
     assert "The axis has no length." in why_html(refused)
     assert "Nothing measured yet." in result_html(EMPTY)
     assert "rr-amber" not in hint_html(step(refused, HandleMoved("axis", 1, (300.0, 250.0))))
+
+
+def test_each_method_says_how_sure_it_is_and_what_that_rests_on(measured: tuple[Session, Reconstruction]) -> None:
+    session, result = measured
+    by_paper = replace(session, measured=None)
+    paper = reconstruct(result.frame, result.drawing, Settings(method="paper"))
+    by_paper = step(by_paper, Reconstructed(by_paper.revision, paper))
+    assert 'data-value="true">certain<' in result_html(session)
+    assert "(95 %)" in result_html(session)
+    assert "Diameter by the cut" not in why_html(session)
+    assert "estimated from the frame" in why_html(session)
+    assert "not certain, no interval" in result_html(by_paper)
+    assert "Across the drawn axis" in why_html(by_paper)
+    assert "%" not in why_html(by_paper)
+
+
+def test_sections_taken_out_until_nothing_is_left_can_be_put_back_one_by_one(
+    measured: tuple[Session, Reconstruction],
+) -> None:
+    session, result = measured
+    assert result.second_cut is not None
+    every = frozenset(range(len(result.second_cut.circles.state)))
+    emptied = reconstruct(result.frame, replace(result.drawing, excluded_sections=every), result.settings)
+    session = replace(session, objects=(replace(session.shown, excluded_sections=every),))
+    session = step(session, Reconstructed(session.revision, emptied))
+    assert "excluded by hand" in hint(session)
+    assert "excluded by hand" in why_html(session)
+    assert step(session, SectionToggled(5)).shown.excluded_sections == every - {5}
 
 
 def test_a_section_is_taken_out_and_put_back_and_forgotten_with_the_drawing(
