@@ -58,7 +58,18 @@ def test_fit_in_words(rotrecon, scene):
     assert code == 0
     assert "mm in diameter" in out
     assert "tool: mechanical cutter" in out
+    assert "\n  certain\n" in out
+    assert "(95 %:" in out.splitlines()[0]
+    assert "this noise is: " in out
+    assert "first cut" not in out
+
+
+def test_the_method_of_the_paper_shows_its_cuts_and_claims_no_certainty(rotrecon, scene):
+    code, out, _ = rotrecon("fit", scene, *drawing_of(scene), "--method", "paper")
+    assert code == 0
     assert "the first cut alone gives" in out
+    assert "the paper's method has no measure of either" in out
+    assert "95 %" not in out
 
 
 def test_kind_and_tools_can_be_given(rotrecon, scene, tmp_path):
@@ -96,7 +107,11 @@ def test_views_are_an_honest_cannot(rotrecon):
 
 @pytest.mark.parametrize("name", ["tin", "blue_mug", "green_bowl", "pr2_mug", "concrete_pipe"])
 def test_every_recording_gets_an_answer_in_the_stated_form(rotrecon, name):
-    code, out, _ = rotrecon("fit", recording(name), "--area", "300,200 380,320", "--axis", "340,210 340,310", "--json")
+    command = ["fit", recording(name), "--area", "300,200 380,320", "--axis", "340,210 340,310", "--json"]
+    code, out, _ = rotrecon(*command)
+    assert code in (0, 3)
+    assert json.loads(out)["method"] == "robust"
+    code, out, _ = rotrecon(*command, "--method", "paper")
     assert code in (0, 3)
     assert json.loads(out)["method"] == "paper"
 
@@ -138,10 +153,12 @@ def test_simulate_writes_a_scene_that_fit_reads_and_never_over_another(rotrecon,
     code, out, _ = rotrecon("simulate", tmp_path / "ball", "--object", "ball", "--seed", 4)
     assert code == 0
     assert "truth.json" in out
-    code, out, _ = rotrecon("fit", tmp_path / "ball", *drawing_of(tmp_path / "ball"), "--json")
+    command = ["fit", tmp_path / "ball", *drawing_of(tmp_path / "ball")]
+    code, out, _ = rotrecon(*command, "--json")
     assert code == 0
     assert json.loads(out)["kind"] == "sphere"
-    assert "half the axis length (16)" in rotrecon("fit", tmp_path / "ball", *drawing_of(tmp_path / "ball"))[1]
+    assert json.loads(out)["diameter_mm"] == pytest.approx(216, rel=0.005)
+    assert "half the axis length (16)" in rotrecon(*command, "--method", "paper")[1]
     before = sorted((path.name, path.stat().st_mtime_ns) for path in (tmp_path / "ball").iterdir())
     code, _, err = rotrecon("simulate", tmp_path / "ball")
     assert code == 2
