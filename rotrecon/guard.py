@@ -21,7 +21,7 @@ WINDOW_OVER_CORRELATION = 1.6
 LARGEST_WINDOW_PX = 11
 ROUGHER = 1.1
 """Depths that err in one way alone do not become rougher toward the limbs by more than this, and by chance."""
-CHANCE, SUSPICION = 2.5, 1.0
+CHANCE, SUSPICION = 3.5, 1.0
 """Standard deviations by which a size may differ from that of the inner depths, and where limbs are seen to mislead."""
 CORRECTION_DOUBT = 0.25
 """Standard deviation of what one way to a size changes, over the change: neither way is without error."""

@@ -113,14 +113,23 @@ def coarse(
         scale = max(scale / SHRINK, left, LAST_SCALE)
 
 
-def follow(surface: Surface, patch: Patch, pixels: Indices, units: Floats, free: Bools, edges: Outline) -> Surface:
-    """A surface moved until its outline is where the edges are, some of its depths having a say."""
+def follow(
+    surface: Surface,
+    patch: Patch,
+    pixels: Indices,
+    units: Floats,
+    free: Bools,
+    outlines: tuple[Outline, Outline | None],
+) -> Surface:
+    """A surface moved until its outline is where edges are, some of its depths and the mask's outline having a say."""
     depths = depths_of(patch, pixels)
     scale = max(robust_scale(depths.predict(surface).residual), LAST_SCALE)
-    outline = replace(edges, sigma_px=np.ones(len(edges)))
+    edges, mask = outlines
+    measurements: list[Measurement] = [depths, replace(edges, sigma_px=np.ones(len(edges)))]
+    measurements += [] if mask is None else [mask]
     for edge_scale in FOLLOWED_PX:
-        weighting = [(scale, FOLLOWED_SHARE), (edge_scale, 1.0)]
-        surface = refine(surface, [depths, outline], weighting, cauchy, free, units, FOLLOWING_ITERATIONS).surface
+        weighting = [(scale, FOLLOWED_SHARE), (edge_scale, 1.0), (edge_scale, FOLLOWED_SHARE)][: len(measurements)]
+        surface = refine(surface, measurements, weighting, cauchy, free, units, FOLLOWING_ITERATIONS).surface
     return surface
 
 

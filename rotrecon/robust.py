@@ -5,7 +5,7 @@ from operator import itemgetter
 
 import numpy as np
 
-from rotrecon.fitting import Outline, tukey
+from rotrecon.fitting import TUKEY, Outline, tukey
 from rotrecon.guard import Outlines, Task, doubting, settle
 from rotrecon.hypotheses import Held, Scene, coarse_cost, hypotheses
 from rotrecon.limbs import SeenOutline, seen_outline
@@ -73,11 +73,10 @@ def _following(
     for _ in range(OUTLINE_ROUNDS):
         order = [surface for _, surface in sorted(found.values(), key=itemgetter(0))]
         for surface in (*order, *_tapered(order[0])):
-            if seen.sides == 2 or (seen.sides == 1 and surface not in order):
+            if seen.sides == 2:
                 break
-            seen = max(
-                seen, seen_outline(surface, scene.patch, scene.segments, scene.length_m), key=lambda one: one.rank
-            )
+            other = seen_outline(surface, scene.patch, scene.segments, scene.length_m)
+            seen = max(seen, other, key=lambda one: one.rank)
         if seen.edges is None:
             return (), found
         edges = seen.edges
@@ -95,7 +94,7 @@ def _tapered(surface: Surface) -> list[Surface]:
 def _followed(scene: Scene, held: Held, surface: Surface, edges: Outline) -> tuple[float, Surface]:
     """Cost and surface, once it has followed the outline."""
     units, free = surface.units(scene.length_m), held.free(surface)
-    surface = follow(surface, scene.patch, scene.pixels, units, free, edges)
+    surface = follow(surface, scene.patch, scene.pixels, units, free, (edges, scene.outline))
     return coarse_cost(replace(scene, outline=edges), surface), surface
 
 
@@ -132,9 +131,19 @@ def _independent(lead: RayFit) -> float:
 
 
 def _cost(scene: Scene, lead: RayFit, fit: RayFit) -> float:
-    """Misfit of a surface to the depths and the outline that the lead rests on."""
-    residual = predicted(scene.patch, lead.pixels, fit.surface, lead.sight).residual / lead.sigma
-    cost = lead.likeness.independent_share * float(tukey(residual)[0].sum())
+    """Misfit of a surface to the depths and the outline that the lead rests on.
+
+    What lies beyond its outline costs nothing if the lead does not explain it either, and else as much as any outlier.
+    """
+    rays = scene.patch.rays[:, lead.pixels]
+    costs = tukey(predicted(scene.patch, lead.pixels, fit.surface, lead.sight).residual / lead.sigma)[0]
+    if fit.surface.side < 0:
+        tangency = fit.surface.tangency(rays)
+        gap_px = tangency.gap_m * scene.patch.focal_px / np.maximum(tangency.depth_m, 1e-9)
+        beyond = gap_px > (lead.sight.window_px - 1) / 2
+        explained = np.abs(lead.residual) < TUKEY * lead.sigma
+        costs = np.where(beyond, np.where(explained, TUKEY**2 / 6, 0.0), costs)
+    cost = lead.likeness.independent_share * float(costs.sum())
     for outline, share in lead.outlines:
         cost += share * float(tukey(outline.predict(fit.surface).residual)[0].sum())
     return cost
