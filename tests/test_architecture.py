@@ -7,14 +7,29 @@ import pytest
 
 ROOT = Path(__file__).parents[1]
 FORBIDDEN = {"app", "viser", "fastapi", "starlette", "uvicorn", "typer"}
-ORDER = [
-    "arrays", "camera", "primitives", "workspace", "tool_table", "settings", "frame", "drawing",
-    "segmentation", "circles", "axis", "radii", "outcome", "section_fit", "tools", "reconstruct", "overlay",
+GIVEN = [
+    "errors", "files", "arrays", "camera", "primitives", "workspace", "tool_table", "settings", "frame", "drawing",
+    "outcome", "noise",
 ]  # fmt: skip
+PROPOSED_AXIS = ["planes", "foreground", "stroke_ends", "mirror", "hollow", "axis_proposal", "axis_direction"]
+SEGMENTED = ["segmentation", "circles", "axis", "tools", "reconstruction", "section_cuts"]
+BY_SECTIONS = ["radii", "section_fit", "by_sections"]
+BY_RAYS = [
+    "surfaces", "patch", "correlation", "fitting", "ray_fit", "starts", "edge_lines", "edge_steps", "edges", "limbs",
+    "guard", "hypotheses", "robust", "extent", "turned", "height_radii", "profile", "parts", "smoothness",
+    "turned_start", "turned_fit", "intervals", "recognition", "soundness", "judgement", "section_radii", "by_rays",
+]  # fmt: skip
+SHOWN = ["answer", "overlay", "mesh"]
+ORDER = [*GIVEN, *PROPOSED_AXIS, *SEGMENTED, *BY_SECTIONS, *BY_RAYS, "reconstruct", *SHOWN]
 """The flow of data; a stage may import only what stands before it."""
-STAGES = {"workspace", "drawing", "segmentation", "circles", "radii"}
+STAGES = {
+    "workspace", "drawing", "segmentation", "circles", "radii", "noise", "planes", "surfaces", "correlation",
+    "edge_lines", "starts", "extent", "tools",
+}  # fmt: skip
 """They know the types, and not each other."""
-TYPES = {"arrays", "camera", "primitives", "settings", "frame"}
+TYPES = {
+    "arrays", "camera", "primitives", "settings", "frame", "drawing", "outcome", "tool_table", "surfaces", "patch",
+}  # fmt: skip
 
 
 def imports(path: Path) -> set[str]:
@@ -34,6 +49,22 @@ def local(path: Path) -> set[str]:
 @pytest.mark.parametrize("path", sorted((ROOT / "rotrecon").rglob("*.py")), ids=lambda path: path.name)
 def test_library_knows_neither_the_app_nor_a_web_framework(path):
     assert not {name.split(".")[0] for name in imports(path)} & FORBIDDEN
+
+
+def test_every_module_has_its_place_in_the_flow():
+    assert sorted(ORDER) == sorted(path.stem for path in (ROOT / "rotrecon").glob("[!_]*.py"))
+
+
+def test_the_two_methods_share_what_is_segmented_and_not_their_own_stages():
+    for name in BY_RAYS:
+        assert not local(ROOT / "rotrecon" / f"{name}.py") & (set(BY_SECTIONS) - {"radii"}), name
+    for name in BY_SECTIONS:
+        assert not local(ROOT / "rotrecon" / f"{name}.py") & set(BY_RAYS), name
+
+
+@pytest.mark.parametrize("name", ORDER)
+def test_measuring_knows_neither_scene_folders_nor_simulations(name):
+    assert not local(ROOT / "rotrecon" / f"{name}.py") & {"scene", "simulation"}
 
 
 @pytest.mark.parametrize("name", ORDER)
