@@ -131,6 +131,9 @@ def _reconstruction(segmented: Reconstruction, found: _Found, radii: SectionRadi
     candidates = candidates_of(found.ranked, chosen, middle_m, settings)
     doubts = doubts_of(chosen, found.soundness, intervals, radii.circles.state, scene, settings)
     rivals = [one for one in found.ranked if one is not chosen and is_possible(one, chosen, settings)]
+    low_m, high_m = intervals.diameter_m
+    narrow = high_m - low_m <= settings.certain_interval * (high_m + low_m) / 2
+    certain = narrow and not doubts and not rivals
     T_base_camera = segmented.frame.T_base_camera
     fit = Fit(
         solid=solid,
@@ -141,7 +144,7 @@ def _reconstruction(segmented: Reconstruction, found: _Found, radii: SectionRadi
         concave=chosen.surface.side > 0,
         doubts=doubts,
         intervals=intervals,
-        evidence=_evidence(segmented, found, scene, radii, not doubts and not rivals, candidates[0].score),
+        evidence=_evidence(segmented, found, scene, radii, certain, candidates[0].score),
     )
     cut = Cut(radii.circles, FittedAxis(found.axis.point_m, found.axis.direction, radii.circles.used))
     result = replace(segmented, fit=fit, sections=radii.sections, second_cut=cut, candidates=candidates)

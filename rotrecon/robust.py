@@ -10,8 +10,8 @@ from rotrecon.guard import Outlines, Task, doubting, settle
 from rotrecon.hypotheses import Held, Scene, coarse_cost, hypotheses
 from rotrecon.limbs import SeenOutline, seen_outline
 from rotrecon.radii import Shape
-from rotrecon.ray_fit import RayFit, fine, follow, predicted
-from rotrecon.surfaces import Lateral, Surface
+from rotrecon.ray_fit import RayFit, Sight, fine, follow, predicted
+from rotrecon.surfaces import Ball, Lateral, Surface
 
 PARAMETERS: dict[Shape, int] = {"cylinder": 5, "cone": 6, "sphere": 4}
 HOPELESS = 2.0
@@ -65,13 +65,16 @@ def rank(scene: Scene, held: Held) -> tuple[Ranked, ...]:
 def _following(
     scene: Scene, held: Held, found: dict[Shape, tuple[float, Surface]]
 ) -> tuple[Outlines, dict[Shape, tuple[float, Surface]]]:
-    """The outline in the picture, and the surfaces with their costs once they have followed it.
+    """The outline in the picture, and the surfaces with their costs once they have followed it; none for a ball.
 
     From a surface that has followed one side of it, the other may be seen too.
     """
     seen = SeenOutline(None, 0)
     for _ in range(OUTLINE_ROUNDS):
         order = [surface for _, surface in sorted(found.values(), key=itemgetter(0))]
+        if isinstance(order[0], Ball):
+            # the edge of a ball, everywhere as bright as what is behind it or brighter, is seen too far inside
+            return (), found
         for surface in (*order, *_tapered(order[0])):
             if seen.sides == 2:
                 break
@@ -104,8 +107,17 @@ def _settled(scene: Scene, held: Held, surface: Surface, outlines: Outlines) -> 
     depths = _sound(settle(surface, Task(scene.patch, units, free, ())))
     if depths is None or not outlines:
         return depths
+    return _with_outline(scene, held, surface, depths, outlines)
+
+
+def _with_outline(scene: Scene, held: Held, surface: Surface, depths: RayFit, outlines: Outlines) -> RayFit | None:
+    """A surface fitted to the outline too; it doubts what that changes, and what the limbs as they are would change."""
+    units, free = surface.units(scene.length_m), held.free(surface)
     both = _sound(fine(surface, scene.patch, units, free, depths.sight, outlines))
-    return None if both is None else doubting(both, depths)
+    if both is None or depths.sight == Sight():
+        return both and doubting(both, depths)
+    whole = _sound(fine(both.surface, scene.patch, units, free, Sight(), outlines))
+    return doubting(both, depths) if whole is None else doubting(doubting(both, depths), whole)
 
 
 def _sound(fit: RayFit | None) -> RayFit | None:
@@ -118,11 +130,10 @@ def _like(lead: RayFit, scene: Scene, held: Held, surface: Surface) -> RayFit | 
     units, free = surface.units(scene.length_m), held.free(surface)
     if len(lead.free) == len(free):
         return lead
-    fit = _sound(fine(surface, scene.patch, units, free, lead.sight, lead.outlines))
-    if fit is None or not lead.outlines:
-        return fit
-    depths = _sound(fine(fit.surface, scene.patch, units, free, lead.sight))
-    return None if depths is None else doubting(fit, depths)
+    depths = _sound(fine(surface, scene.patch, units, free, lead.sight))
+    if depths is None or not lead.outlines:
+        return depths
+    return _with_outline(scene, held, surface, depths, lead.outlines)
 
 
 def _independent(lead: RayFit) -> float:

@@ -72,10 +72,12 @@ class Settings:
     doubtful_inlier_share: float = 0.75
     doubtful_goes_on: float = 0.8
     """Share of one side's outline beyond which the surface goes on, or half of it on both: a handle is less."""
-    doubtful_pattern: float = 0.05
+    doubtful_pattern: float = 0.045
     """Residual that follows the angle, over the radius: real round things have 0.02, six-sided bars 0.053 and more."""
     widest_interval: float = 0.35
-    """Width of the interval of the diameter over the diameter."""
+    """Width of the interval of the diameter over the diameter: more is no size."""
+    certain_interval: float = 0.25
+    """The same for a kind that is certain: what is known so badly may be something else."""
     excluded_cost: float = 4.6
     """Half the information criterion by which a kind must be worse to be excluded: a hundred times less credible."""
     asked_cost: float = 25.0

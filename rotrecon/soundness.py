@@ -62,7 +62,7 @@ def soundness_of(fit: RayFit, patch: Patch, heights_m: tuple[float, float]) -> S
     return Soundness(
         inlier_share=float(agreeing.sum() / max(known.sum(), 1)),
         roughness=_roughness(fit, sigma_m[agreeing]),
-        pattern=_pattern(fit, points[:, known], (patch.depth_m - trace.depth_m)[known]),
+        pattern=_pattern(fit, points[:, fit.pixels], fit.residual * patch.noise.sigma_m(trace.depth_m[fit.pixels])),
         arc_rad=_arc(fit, points[:, agreeing]),
         ended=ended,
         goes_on=goes_on,
