@@ -55,16 +55,21 @@ class _Axis:
         freeze(self)
 
 
-def fit_turned(start: RayFit, patch: Patch, edge: Ridge, extent: Extent | None = None) -> RayFit | None:
-    """A turned surface from the fit of a lateral one, over an extent or as far as the object is segmented.
+def fit_turned(patch: Patch, edge: Ridge, start: RayFit | None = None, extent: Extent | None = None) -> RayFit | None:
+    """A turned surface through the depths in the area, as far as the object is segmented, or over an extent.
 
-    None when there are too few depths. Raises TypeError for a start that is not lateral. Matching windows are not
-    modelled: depths that they may have carried over the limbs are left out.
+    `start` is the fit of a cylinder or a cone, which says what of the axis is held, from which side it is seen and
+    where an extent is measured from; without it the ridge of the segmented object is enough. None when there are too
+    few depths. Raises ValueError for an extent without a start, and TypeError for one that is not lateral. Matching
+    windows are not modelled: depths that they may have carried over the limbs are left out.
     """
-    if not isinstance(start.surface, Lateral):
+    if start is None and extent is not None:
+        raise ValueError("an extent is measured along an axis; give the fit it belongs to")
+    lateral = None if start is None else start.surface
+    if lateral is not None and not isinstance(lateral, Lateral):
         raise TypeError("a profile needs an axis; start from a cylinder or a cone")
-    free = start.free[:AXIS_PARAMETERS]
-    surface = turned_start(start.surface, ~free[2:], patch, edge, extent, KNOTS)
+    free = np.ones(AXIS_PARAMETERS, dtype=np.bool_) if start is None else start.free[:AXIS_PARAMETERS]
+    surface = turned_start(patch, edge, lateral, ~free[2:], extent, KNOTS)
     if surface is None:
         return None
     axis = _round(surface, patch, WHOLE, free, SCOUTS)

@@ -69,19 +69,19 @@ class Points:
 
 
 def turned_start(
-    lateral: Lateral, held: Bools, patch: Patch, edge: Ridge, extent: Extent | None, knots: int
+    patch: Patch, edge: Ridge, lateral: Lateral | None, held: Bools, extent: Extent | None, knots: int
 ) -> Turned | None:
     """A rough turned surface, from the axis of a lateral one or from axes at several slants behind the stroke.
 
-    An object in parts pulls a single cylinder or cone askew. `held` (2,) are the turns of the axis that are known.
-    None when too little is segmented.
+    An object in parts pulls a single cylinder or cone askew, so that this is no more than one of the starts, unless
+    its turns are `held` (2,), it is seen from inside or an extent of it is asked for. None where little is segmented.
     """
     pixels = spread(np.flatnonzero(patch.kept & np.isfinite(patch.depth_m)).astype(np.int32), POINTS)
     depth_m = patch.depth_m[pixels]
     points = Points(patch.rays[:, pixels] * depth_m, patch.noise.sigma_m(depth_m))
-    starts = [lateral]
-    if extent is None and lateral.side < 0 and not held.any():
-        starts += [_slanted(lateral, longest_run(edge), float(tilt)) for tilt in TILTS_RAD]
+    starts = [] if lateral is None else [lateral]
+    if lateral is None or (extent is None and lateral.side < 0 and not held.any()):
+        starts += _slanted(longest_run(edge), patch.focal_px)
     profiles = [rough_profile(start, points.points_m, extent, ROUGH_KNOTS) for start in starts]
     scouts = points.chosen(spread(np.arange(len(points), dtype=np.int32), SCOUTS))
     followed = [_followed(profile, scouts, held, 1) for profile in profiles if profile is not None]
@@ -96,17 +96,21 @@ def turned_start(
     return turned_from(rough, at, rough.curve(at)[0], knots)
 
 
-def _slanted(lateral: Lateral, edge: Ridge, tilt: float) -> Lateral:
-    """A cylinder behind a ridge, as wide as that, its axis turned toward the camera or away from it."""
+def _slanted(edge: Ridge, focal_px: float) -> list[Lateral]:
+    """Cylinders behind a ridge, as wide as that, their axes turned toward the camera or away from it."""
+    if len(edge.width_m) < FEWEST_PIXELS:
+        return []
     middle, along = robust_line(edge.points_m)
     toward = turn_of(along, -middle)[1]
-    turn = turn_of(np.cos(tilt) * along + np.sin(tilt) * toward, -middle)
     radius_m = float(np.median(edge.width_m)) / 2
-    return replace(lateral, center_m=middle - radius_m * turn[1], turn=turn, radius_m=radius_m, slope=0.0, tapers=False)
+    turns = [turn_of(np.cos(tilt) * along + np.sin(tilt) * toward, -middle) for tilt in TILTS_RAD]
+    return [Lateral(middle - radius_m * turn[1], turn, radius_m, 0.0, focal_px, tapers=False) for turn in turns]
 
 
 def longest_run(edge: Ridge) -> Ridge:
     """The longest part of a ridge without a step in depth that only another object makes."""
+    if len(edge.width_m) == 0:
+        return edge
     step_m = np.abs(np.diff(edge.points_m[:, 2]))
     limit_m = STEP * np.minimum(edge.width_m[1:], edge.width_m[:-1])
     breaks = np.concatenate([[0], np.flatnonzero(step_m > limit_m) + 1, [len(edge.width_m)]])
