@@ -116,7 +116,8 @@ class MatchedDepths:
         image = np.zeros(self.shape)
         image.ravel()[self.place[hit]] = values[hit]
         side = (self.window_px, self.window_px)
-        summed = np.asarray(cv2.boxFilter(image, -1, side, normalize=False, borderType=cv2.BORDER_CONSTANT))
+        summed = cv2.boxFilter(image, -1, side, normalize=False, borderType=cv2.BORDER_CONSTANT)
+        summed = np.asarray(summed, dtype=np.float64)
         return summed.ravel()[self.place[self.index]]
 
     def chosen(self, index: Indices | Bools) -> "MatchedDepths":

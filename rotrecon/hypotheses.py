@@ -78,7 +78,9 @@ def hypotheses(scene: Scene, held: Held) -> dict[Shape, tuple[float, Surface]]:
         "cone": cone_starts(scene.ridge, held.direction, focal_px),
         "sphere": ball_starts(scene.ridge, points_m, focal_px),
     }
-    followed = {shape: _best(scene, held, of_shape) for shape, of_shape in starts.items() if shape != "cone"}
+    followed: dict[Shape, Surface] = {
+        shape: _best(scene, held, of_shape) for shape, of_shape in starts.items() if shape != "cone"
+    }
     cylinder = followed["cylinder"]
     assert isinstance(cylinder, Lateral)
     followed["cone"] = _best(scene, held, [replace(cylinder, tapers=True), *starts["cone"]])
@@ -88,7 +90,11 @@ def hypotheses(scene: Scene, held: Held) -> dict[Shape, tuple[float, Surface]]:
 def _best(scene: Scene, held: Held, starts: Sequence[Surface]) -> Surface:
     """The surface that the best start leads to."""
     scouts = spread(scene.pixels, SCOUT_PIXELS)
-    edges = None if scene.outline is None else scene.outline.chosen(spread(np.arange(len(scene.outline)), SCOUT_EDGES))
+    edges = (
+        None
+        if scene.outline is None
+        else scene.outline.chosen(spread(np.arange(len(scene.outline), dtype=np.int32), SCOUT_EDGES))
+    )
     found = [
         coarse(start, scene.patch, scouts, start.units(scene.length_m), held.free(start), edges) for start in starts
     ]

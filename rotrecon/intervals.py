@@ -1,7 +1,7 @@
 """95 % intervals of the numbers of a solid that was fitted along the rays."""
 
 import numpy as np
-from scipy.special import stdtrit
+from scipy.special import stdtrit  # pyright: ignore[reportMissingTypeStubs, reportUnknownVariableType]
 
 from rotrecon.arrays import Floats
 from rotrecon.outcome import Intervals, Range

@@ -50,9 +50,8 @@ class Limbs:
 
     def chosen(self, which: Bools) -> "Limbs":
         """Some of the points."""
-        return Limbs(
-            *(values[which] for values in (self.point_px, self.normal_px, self.side, self.along, self.depth_m))
-        )
+        place, normal, side = self.point_px[which], self.normal_px[which], self.side[which]
+        return Limbs(place, normal, side, self.along[which], self.depth_m[which])
 
 
 def limbs_of(surface: Surface, patch: Patch, heights_m: Floats) -> Limbs:
@@ -115,7 +114,7 @@ def mask_outline(
     Where depth is unknown between the two, over no more than a gap, the edge may be anywhere in it. None when most
     sections end at the area's border, or in wider gaps.
     """
-    columns = np.arange(kept.shape[1])
+    columns: Indices = np.arange(kept.shape[1], dtype=np.int32)
     found = kept.any(axis=1)
     places: list[Floats] = []
     gaps: list[Floats] = []

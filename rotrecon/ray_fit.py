@@ -157,6 +157,7 @@ def fine(
 ) -> RayFit | None:
     """Rounds over the pixels within the outline and close to it; None when there are too few to hold the parameters."""
     share, size_m, judge = 1.0, surface.size_m, surface
+    pixels: Indices = np.empty(0, dtype=np.int32)
     for _ in range(FINE_ROUNDS):
         # a guard that followed the surface would let it shrink away from what does not fit
         pixels = near(judge if sight.guard < 1 else surface, patch, patch.drawn & np.isfinite(patch.depth_m), sight)

@@ -3,7 +3,7 @@
 from dataclasses import replace
 
 import numpy as np
-from threadpoolctl import ThreadpoolController
+from threadpoolctl import ThreadpoolController  # pyright: ignore[reportMissingTypeStubs]
 
 from rotrecon.arrays import Bools, Cloud, blocks
 from rotrecon.axis_proposal import propose_axis
@@ -43,7 +43,7 @@ def reconstruct(frame: Frame, drawing: Drawing, settings: Settings) -> Reconstru
     if settings.method == "paper":
         return by_sections(segmented)
     # matrices of a few columns are multiplied sooner by one thread than shared out between several
-    with THREADS.limit(limits=1, user_api="blas"):
+    with THREADS.limit(limits=1, user_api="blas"):  # pyright: ignore[reportUnknownMemberType]
         return by_rays(segmented, depth_m)
 
 

@@ -42,8 +42,9 @@ def rank(scene: Scene, held: Held) -> tuple[Ranked, ...]:
     """
     found = hypotheses(scene, held)
     limit = HOPELESS * min(cost for cost, _ in found.values()) + LITTLE
-    promising = {shape: surface for shape, (cost, surface) in found.items() if cost <= limit}
-    outlines, followed = _following(scene, held, {shape: found[shape] for shape in promising})
+    promising: list[Shape] = [shape for shape in found if found[shape][0] <= limit]
+    worth: dict[Shape, tuple[float, Surface]] = {shape: found[shape] for shape in promising}
+    outlines, followed = _following(scene, held, worth)
     order = sorted(followed, key=lambda shape: followed[shape][0] + PARAMETERS[shape])
     lead = next((fit for shape in order if (fit := _settled(scene, held, followed[shape][1], outlines))), None)
     if lead is None:
@@ -84,7 +85,8 @@ def _following(
             return (), found
         edges = seen.edges
         found = {shape: _followed(scene, held, surface, edges) for shape, (_, surface) in found.items()}
-    return ((edges, 1.0),), found
+    assert seen.edges is not None
+    return ((seen.edges, 1.0),), found
 
 
 def _tapered(surface: Surface) -> list[Surface]:

@@ -53,7 +53,7 @@ def section_radii(
     low, high = (float(end) for end in (height.min(), height.max()))
     margin = max((high - low) / (2 * count), 1e-6)
     sections = cut_in_space(cloud_m, pixels, axis, (low - margin, high + margin), count)
-    heights = low - margin + (np.arange(count) + 0.5) * sections.pitch_m
+    heights: Floats = low - margin + (np.arange(count, dtype=np.float64) + 0.5) * sections.pitch_m
     shape_m = _shape(surface, heights)
     circles = circumcircles(*sections.base_points(), settings)
     radius, sigma = _radii(sections, shape_m, fit, settings.minimum_section_pixels)
@@ -77,11 +77,11 @@ def _shape(surface: Surface, heights_m: Floats) -> Floats:
 
 def _radii(sections: SpaceSections, shape_m: Floats, fit: RayFit, fewest: int) -> tuple[Floats, Floats]:
     """Median distance (S,) of each section's inner points from the axis, and its standard deviation (S,)."""
-    number = np.repeat(np.arange(len(shape_m)), np.diff(sections.start))
+    number: Indices = np.repeat(np.arange(len(shape_m), dtype=np.int32), np.diff(sections.start))
     place = sections.in_plane(sections.points_of(np.ones(len(shape_m), dtype=np.bool_)).astype(np.float64))
     inner = np.abs(place[:, 0]) < INNER * shape_m[number]
     number, distance = number[inner], np.hypot(place[inner, 0], place[inner, 1])
-    count = np.bincount(number, minlength=len(shape_m))
+    count = np.bincount(number, minlength=len(shape_m)).astype(np.int32)
     radius = _medians(number, distance, count)
     sigma = _medians(number, np.abs(distance - radius[number]), count) * TO_SIGMA * MEDIAN_LOSS
     independent = np.maximum(count * np.sqrt(fit.likeness.independent_share), 1.0)

@@ -43,7 +43,7 @@ def ridge(camera: PinholeCamera, depth_m: Floats, segments: CrossSegments, kept:
     low, middle, high = ((rank > share * (count - 1)).argmax(axis=1) for share in (0.02, 0.5, 0.98))
     width = (high - low) / 0.96 + 1
     half = np.maximum(0.1 * width, 1.0)[:, None]
-    near = kept & (np.abs(np.arange(kept.shape[1]) - middle[:, None]) <= half)
+    near = kept & (np.abs(np.arange(kept.shape[1], dtype=np.float64) - middle[:, None]) <= half)
     depth = medians(np.where(near, depth_m, np.inf), near.sum(axis=1))
     across = segments.first_offset_px + middle
     pixel = segments.origin_px + rows[:, None] * segments.along + across[:, None] * segments.across
