@@ -5,9 +5,9 @@ from dataclasses import dataclass, replace
 import numpy as np
 
 from rotrecon.arrays import Bools, Floats
-from rotrecon.fitting import Outline
+from rotrecon.fitting import Outline, tukey
 from rotrecon.patch import Patch
-from rotrecon.ray_fit import RayFit, Sight, fine
+from rotrecon.ray_fit import RayFit, Sight, fine, predicted
 from rotrecon.surfaces import Lateral, Surface
 
 MATCHED = 0.25
@@ -22,7 +22,7 @@ LARGEST_WINDOW_PX = 11
 ROUGHER = 1.1
 """Depths that err in one way alone do not become rougher toward the limbs by more than this, and by chance."""
 CHANCE, SUSPICION = 3.5, 1.0
-"""Standard deviations by which a size may differ from that of the inner depths, and where limbs are seen to mislead."""
+"""Standard deviations by which inner depths may be explained worse, and by which a size may differ from theirs."""
 CORRECTION_DOUBT = 0.25
 """Standard deviation of what one way to a size changes, over the change: neither way is without error."""
 WINDOWS_AT_MOST = 1.3
@@ -59,14 +59,14 @@ def settle(surface: Surface, task: Task) -> RayFit | None:
         windowed = _fit(surface, task, Sight(window_px))
     smoothest = min((fit for fit in (whole, windowed) if fit), key=lambda fit: fit.sigma)
     roughest = max((fit for fit in (whole, windowed) if fit), key=lambda fit: fit.sigma)
-    chance = np.inf if roughest.sigma > DECISIVE * smoothest.sigma else CHANCE
-    if inner is None or _agrees(smoothest, inner, chance):
+    decisive = roughest.sigma > DECISIVE * smoothest.sigma
+    if inner is None or (_as_smooth(smoothest, inner) and (decisive or _explains(smoothest, inner, task.patch))):
         return smoothest if smoothest is whole else doubting(smoothest, whole)
     best, narrow, wide = inner, 0, len(GUARDS)
     while narrow < wide:
         middle = (narrow + wide) // 2
         guarded = _fit(whole.surface, task, Sight(guard=GUARDS[middle]))
-        if guarded is not None and _agrees(guarded, inner, SUSPICION):
+        if guarded is not None and _as_smooth(guarded, inner) and _as_large(guarded, inner):
             best, narrow = guarded, middle + 1
         else:
             wide = middle
@@ -77,13 +77,30 @@ def _fit(surface: Surface, task: Task, sight: Sight) -> RayFit | None:
     return fine(surface, task.patch, task.units, task.free, sight, task.outlines)
 
 
-def _agrees(fit: RayFit, inner: RayFit, chance: float) -> bool:
-    """Whether a fit to more depths is as smooth as the inner one, and of the same size."""
+def _as_smooth(fit: RayFit, inner: RayFit) -> bool:
+    """Whether a fit to more depths is as smooth as the inner one."""
     independent = max(inner.independent, FEWEST_INDEPENDENT)
-    rougher = fit.sigma > inner.sigma * (ROUGHER + 0.5 / np.sqrt(2.0 * independent))
+    return fit.sigma <= inner.sigma * (ROUGHER + 0.5 / np.sqrt(2.0 * independent))
+
+
+def _explains(fit: RayFit, inner: RayFit, patch: Patch) -> bool:
+    """Whether a fit to more depths explains the inner ones nearly as well as their own fit does.
+
+    Twice the difference of the costs has a chi-square distribution with as many degrees as parameters (Wilks 1938).
+    """
+    own, other = (
+        float(tukey(predicted(patch, inner.pixels, one.surface, Sight()).residual / inner.sigma)[0].sum())
+        for one in (inner, fit)
+    )
+    degrees = int(inner.free.sum())
+    return 2 * inner.likeness.independent_share * (other - own) <= degrees + CHANCE * np.sqrt(2 * degrees)
+
+
+def _as_large(fit: RayFit, inner: RayFit) -> bool:
+    """Whether a fit to more depths has the size of the inner one, as nearly as where limbs are seen to mislead."""
     variance = np.maximum(np.diag(inner.covariance) - np.diag(fit.covariance), 0.0)[_size_of(fit)]
     apart = abs(fit.surface.size_m - inner.surface.size_m)
-    return not rougher and (np.isinf(chance) or bool(apart <= chance * np.sqrt(variance) + 1e-6))
+    return bool(apart <= SUSPICION * np.sqrt(variance) + 1e-6)
 
 
 def doubting(fit: RayFit, other: RayFit) -> RayFit:

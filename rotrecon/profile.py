@@ -6,15 +6,12 @@ import numpy as np
 
 from rotrecon.arrays import Bools, Floats, freeze
 from rotrecon.correlation import Likeness
-from rotrecon.fitting import tukey
-from rotrecon.height_radii import height_radii, looks_at
+from rotrecon.height_radii import grazes_at, height_radii, looks_at
 from rotrecon.patch import Patch
 from rotrecon.ray_fit import RayFit
 from rotrecon.surfaces import Lateral
 from rotrecon.turned import AXIS_PARAMETERS, Turned
 
-EFFICIENCY = 0.95
-"""Of the redescending loss (Beaton and Tukey 1974)."""
 NORMAL_95 = 1.96
 
 
@@ -54,42 +51,34 @@ def profile_of(fit: RayFit, patch: Patch, heights_m: Floats) -> Profile:
     if not isinstance(fit.surface, Lateral):
         raise TypeError("a ball has no axis along which it has a profile")
     looks = looks_at(fit.surface, patch, heights_m, fit.sight.guard)
-    found = height_radii(looks)
-    weight = tukey(found.residual / found.sigma)[1]
-    own = found.columns[-1] / found.sigma
-    info = np.bincount(looks.place, weight * own**2, looks.count)
-    inliers = np.bincount(looks.place, weight > 0, looks.count)
-    known = found.sound
-    radius = np.where(known, looks.surface.curve(heights_m)[0] + found.change_m, np.nan)
+    grazes = grazes_at(looks.surface, fit.outlines, heights_m)
     pitch_m = _pitch(looks.surface, patch, heights_m)
-    rows = np.gradient(heights_m) / pitch_m
-    alike = _alike(fit.likeness, rows, inliers / np.maximum(rows, 1e-9))
-    believed = EFFICIENCY * np.bincount(looks.place, np.where(weight > 0, own**2, 0.0), looks.count)
-    own_m = np.where(known, np.sqrt(alike / np.maximum(believed, 1e-300)), np.nan)
-    levers = [
-        np.bincount(looks.place, weight * own * column / found.sigma, looks.count) for column in found.columns[:-1]
-    ]
-    lever = np.where(known, np.stack(levers) / np.maximum(info, 1e-300), np.nan)
+    rows = float(np.median(np.diff(heights_m))) / pitch_m
+    together = _alike(fit.likeness, rows, len(looks.pixels) / len(heights_m) / rows)
+    found = height_radii(looks, grazes, 1.0 / together)
+    info = np.where(found.sound, found.sums.own, np.nan)
+    lever = found.sums.mixed / info
     axis = fit.covariance[:AXIS_PARAMETERS, :AXIS_PARAMETERS]
-    reach = NORMAL_95 * np.sqrt(own_m**2 + np.einsum("pn,pq,qn->n", lever, axis, lever))
-    length_m = fit.likeness.alike * np.sqrt(np.pi) * fit.likeness.length_px * pitch_m
-    lean = _lean(heights_m, lever, axis, known)
-    return Profile(heights_m, radius, radius - reach, radius + reach, own_m, lean, length_m)
+    reach = NORMAL_95 * np.sqrt(1.0 / info + np.einsum("pn,pq,qn->n", lever, axis, lever))
+    radius = np.where(found.sound, looks.surface.curve(heights_m)[0] + found.change_m, np.nan)
+    length_m = fit.likeness.alike * float(np.sqrt(np.pi)) * fit.likeness.length_px * pitch_m
+    lean = _lean(heights_m, lever, axis, found.sound)
+    return Profile(heights_m, radius, radius - reach, radius + reach, 1.0 / np.sqrt(info), lean, length_m)
 
 
-def _alike(likeness: Likeness, rows: Floats, width: Floats) -> Floats:
-    """How many times larger the variance of the mean of strips of pixels (n,) is than if they erred independently."""
+def _alike(likeness: Likeness, rows: float, width: float) -> float:
+    """How many times larger the variance of the mean of a strip of pixels is than if they erred independently."""
     together = _together(rows, likeness.length_px) * _together(width, likeness.length_px)
-    return 1.0 + likeness.alike * np.maximum(together - 1.0, 0.0)
+    return 1.0 + likeness.alike * max(together - 1.0, 0.0)
 
 
-def _together(count: Floats, length_px: float) -> Floats:
-    """Sum of exp(-(lag / length)^2) over the lags in a row of `count` pixels (n,), seen from its mean pixel."""
+def _together(count: float, length_px: float) -> float:
+    """Sum of exp(-(lag / length)^2) over the lags in a row of `count` pixels, seen from its mean pixel."""
     if length_px == 0.0:
-        return np.ones_like(count)
+        return 1.0
     lag = np.arange(1, int(np.ceil(2.5 * length_px)) + 1)
-    share = np.maximum(1.0 - lag / np.maximum(count, 1.0)[:, None], 0.0)
-    return 1.0 + 2.0 * (share * np.exp(-np.square(lag / length_px))).sum(axis=1)
+    share = np.maximum(1.0 - lag / max(count, 1.0), 0.0)
+    return 1.0 + 2.0 * float((share * np.exp(-np.square(lag / length_px))).sum())
 
 
 def _pitch(surface: Turned, patch: Patch, heights_m: Floats) -> float:

@@ -37,6 +37,8 @@ FOLLOWED_PX, FOLLOWED_SHARE = (4.0, 1.0), 0.2
 COARSE_ITERATIONS, FOLLOWING_ITERATIONS, FINE_ITERATIONS, FINE_ROUNDS = 6, 10, 8, 3
 OVERSAMPLED, LEAST_PIXELS = 20.0, 2500
 """Pixels compared for each independent one, and at least: more would only repeat them."""
+REPEATING = 0.25
+"""Likeness of errors above which neighbouring pixels repeat each other."""
 SETTLED_SIZE = 1e-4
 """A round that changes the radius by less than this share is the last."""
 NEAR_PX = 4.0
@@ -156,18 +158,18 @@ def fine(
     outlines: tuple[tuple[Outline, float], ...] = (),
 ) -> RayFit | None:
     """Rounds over the pixels within the outline and close to it; None when there are too few to hold the parameters."""
-    share, size_m, judge = 1.0, surface.size_m, surface
+    share, alike, size_m, judge = 1.0, 0.0, surface.size_m, surface
     pixels: Indices = np.empty(0, dtype=np.int32)
     for _ in range(FINE_ROUNDS):
         # a guard that followed the surface would let it shrink away from what does not fit
         pixels = near(judge if sight.guard < 1 else surface, patch, patch.drawn & np.isfinite(patch.depth_m), sight)
-        if sight.window_px == 1:
+        if sight.window_px == 1 and alike > REPEATING:
             pixels = spread(pixels, max(int(OVERSAMPLED * share * len(pixels)), LEAST_PIXELS))
         if len(pixels) < 2 * len(units):
             return None
         depths = _measured(patch, pixels, surface, sight)
         sigma, likeness = _noise_of(patch, pixels, depths.predict(surface).residual)
-        share = likeness.independent_share
+        share, alike = likeness.independent_share, likeness.alike
         measurements: list[Measurement] = [depths, *(outline for outline, _ in outlines)]
         weighting = [(sigma, share), *((1.0, outline_share) for _, outline_share in outlines)]
         surface = refine(surface, measurements, weighting, tukey, free, units, FINE_ITERATIONS).surface

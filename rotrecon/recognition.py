@@ -14,7 +14,7 @@ from rotrecon.surfaces import Ball, Lateral
 def chosen_of(ranked: tuple[Ranked, ...], kind: Kind | None, settings: Settings) -> Ranked | None:
     """The most credible shape, or that of the kind asked for; None when the depths speak against that kind.
 
-    A cone that hardly tapers is a cylinder unless the depths insist.
+    A cone that hardly tapers is a cylinder unless the depths insist: of many cylinders some look like such a cone.
     """
     fitted = [one for one in ranked if one.fit is not None]
     if kind is not None:
@@ -22,7 +22,7 @@ def chosen_of(ranked: tuple[Ranked, ...], kind: Kind | None, settings: Settings)
         return asked[0] if asked else None
     best = fitted[0]
     if best.shape == "cone" and abs(half_angle_rad(best)) < settings.cone_half_angle_rad:
-        straight = [one for one in fitted if one.shape == "cylinder" and one.cost <= settings.excluded_cost]
+        straight = [one for one in fitted if one.shape == "cylinder" and one.cost <= settings.tapers_cost]
         return straight[0] if straight else best
     return best
 

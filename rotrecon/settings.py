@@ -80,6 +80,8 @@ class Settings:
     """The same for a kind that is certain: what is known so badly may be something else."""
     excluded_cost: float = 4.6
     """Half the information criterion by which a kind must be worse to be excluded: a hundred times less credible."""
+    tapers_cost: float = 15.0
+    """The same for a cylinder beside a cone that hardly tapers, before it is called a cone."""
     asked_cost: float = 25.0
     """The same for a kind that was asked for: worse than this, the depths speak against it."""
     tools: ToolTable = field(default_factory=default_tools)

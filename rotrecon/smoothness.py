@@ -1,4 +1,4 @@
-"""What keeps the profile of a turned surface smooth, and how strongly, which the data choose."""
+"""The curve of a turned surface through radii that were seen, and the prior that keeps it smooth as the data ask."""
 
 from dataclasses import dataclass, replace
 
@@ -47,6 +47,35 @@ class Smoothness:
     def chosen(self, index: Indices | Bools) -> "Smoothness":
         """Some of the differences."""
         return replace(self, rows=self.rows[index])
+
+
+@dataclass(frozen=True, eq=False)
+class Radii:
+    """Radii seen at n heights about the axis of a turned surface, whose own errors move them with it."""
+
+    height_m: Floats
+    radius_m: Floats
+    sigma_m: Floats
+    """(n,) each by itself."""
+    lever: Floats
+    """(4, n) how much less each is for a step of the axis' parameters."""
+
+    def __post_init__(self) -> None:
+        freeze(self)
+
+    def __len__(self) -> int:
+        return len(self.height_m)
+
+    def predict(self, surface: Surface) -> Prediction:
+        """The surface's radii there. Raises TypeError for a surface that is not turned."""
+        if not isinstance(surface, Turned):
+            raise TypeError("only a turned surface has a profile")
+        columns = np.concatenate([self.lever, surface.basis(self.height_m)]) / self.sigma_m
+        return Prediction((self.radius_m - surface.curve(self.height_m)[0]) / self.sigma_m, columns)
+
+    def chosen(self, index: Indices | Bools) -> "Radii":
+        """Some of the heights."""
+        return Radii(self.height_m[index], self.radius_m[index], self.sigma_m[index], self.lever[:, index])
 
 
 def second_differences(count: int) -> Floats:

@@ -7,11 +7,11 @@ import numpy as np
 from rotrecon.arrays import Bools, Floats, Indices, freeze
 from rotrecon.correlation import Likeness, likeness_of
 from rotrecon.extent import Extent
-from rotrecon.fitting import Measurement, refine, tukey
-from rotrecon.height_radii import HeightRadii, Looks, height_radii, looks_at
+from rotrecon.fitting import Measurement, Outline, refine, tukey
+from rotrecon.height_radii import HeightRadii, Looks, grazes_at, height_radii, looks_at
 from rotrecon.patch import Patch
-from rotrecon.ray_fit import INLIER_SIGMA, OVERSAMPLED, WHOLE, RayFit, Sight, depths_of, near, spread
-from rotrecon.smoothness import UNBENT, Smoothness, next_scale
+from rotrecon.ray_fit import INLIER_SIGMA, OVERSAMPLED, WHOLE, RayFit, Sight, depths_of, spread
+from rotrecon.smoothness import UNBENT, Radii, Smoothness, next_scale
 from rotrecon.starts import Ridge
 from rotrecon.surfaces import Lateral
 from rotrecon.turned import AXIS_PARAMETERS, Turned, turned_from
@@ -33,9 +33,23 @@ WINDOW_REACH = 1.0
 """Of a window over the limb, over the length at which errors are alike."""
 LEAST_GUARD = 0.65
 """Within this share of the radius depth is taken as it is."""
+UNALIKE = Likeness(0.0, 0.0)
 SMOOTHINGS, ITERATIONS = 4, 3
 FIRST_SHARE = 0.02
 """The prior's first scale over the radius."""
+
+
+@dataclass(frozen=True, eq=False)
+class _Task:
+    """What stays the same from round to round."""
+
+    patch: Patch
+    free: Bools
+    """(4,) which of the axis' parameters are."""
+    outlines: tuple[tuple[Outline, float], ...]
+
+    def __post_init__(self) -> None:
+        freeze(self)
 
 
 @dataclass(frozen=True, eq=False)
@@ -43,8 +57,10 @@ class _Axis:
     """An axis found together with the radii of all heights."""
 
     surface: Turned
+    radii: Radii
     guard: float
     """Share of the radius beside it within which depths were asked."""
+    pixels: Indices
     sigma: float
     """Of their residuals."""
     likeness: Likeness
@@ -58,10 +74,11 @@ class _Axis:
 def fit_turned(patch: Patch, edge: Ridge, start: RayFit | None = None, extent: Extent | None = None) -> RayFit | None:
     """A turned surface through the depths in the area, as far as the object is segmented, or over an extent.
 
-    `start` is the fit of a cylinder or a cone, which says what of the axis is held, from which side it is seen and
-    where an extent is measured from; without it the ridge of the segmented object is enough. None when there are too
-    few depths. Raises ValueError for an extent without a start, and TypeError for one that is not lateral. Matching
-    windows are not modelled: depths that they may have carried over the limbs are left out.
+    `start` is the fit of a cylinder or a cone, which says what of the axis is held, from which side it is seen, where
+    an extent is measured from, and what is known of the outline; without it the ridge of the segmented object is
+    enough. None when there are too few depths. Raises ValueError for an extent without a start, and TypeError for a
+    start that is not lateral. Matching windows are not modelled: depths that they may have carried over the limbs are
+    left out.
     """
     if start is None and extent is not None:
         raise ValueError("an extent is measured along an axis; give the fit it belongs to")
@@ -69,15 +86,15 @@ def fit_turned(patch: Patch, edge: Ridge, start: RayFit | None = None, extent: E
     if lateral is not None and not isinstance(lateral, Lateral):
         raise TypeError("a profile needs an axis; start from a cylinder or a cone")
     free = np.ones(AXIS_PARAMETERS, dtype=np.bool_) if start is None else start.free[:AXIS_PARAMETERS]
+    task = _Task(patch, free, () if start is None else start.outlines)
     surface = turned_start(patch, edge, lateral, ~free[2:], extent, KNOTS)
-    if surface is None:
-        return None
-    axis = _round(surface, patch, WHOLE, free, SCOUTS)
+    axis = None if surface is None else _round(surface, task, WHOLE, UNALIKE, SCOUTS)
     for number in range(1, ROUNDS):
         if axis is None:
             return None
-        axis = _round(axis.surface, patch, _guard(axis, patch), free, SCOUTS if number < ROUNDS - 1 else None)
-    return None if axis is None else _smoothed(axis, patch, free)
+        most = SCOUTS if number < ROUNDS - 1 else None
+        axis = _round(axis.surface, task, _guard(axis, patch), axis.likeness, most)
+    return None if axis is None else _smoothed(axis, task)
 
 
 def _guard(axis: _Axis, patch: Patch) -> float:
@@ -89,36 +106,26 @@ def _guard(axis: _Axis, patch: Patch) -> float:
     return max(1.0 - WINDOW_REACH * axis.likeness.length_px / radius_px, LEAST_GUARD)
 
 
-def _round(surface: Turned, patch: Patch, guard: float, free: Bools, most: int | None) -> _Axis | None:
+def _round(surface: Turned, task: _Task, guard: float, likeness: Likeness, most: int | None) -> _Axis | None:
     """A step of Gauss and Newton for the axis and all radii together; None when there are too few depths."""
     heights = np.linspace(surface.low_m, surface.high_m, HEIGHTS)
-    looks = looks_at(surface, patch, heights, guard, most)
-    found = height_radii(looks)
+    looks = looks_at(surface, task.patch, heights, guard, most)
+    grazes = grazes_at(surface, task.outlines, heights)
+    found = height_radii(looks, grazes, min(likeness.independent_share / looks.share, 1.0))
     known = found.sound
     if known.sum() < FEWEST_HEIGHTS:
         return None
-    radius = (looks.surface.curve(heights)[0] + found.change_m)[known]
-    gradient, information = _normal_equations(looks, found)
-    likeness = _likeness(looks, found, patch)
-    share = min(likeness.independent_share / looks.share, 1.0)
-    kept = np.ix_(free, free)
+    gradient, information = found.sums.of_axis()
+    kept = np.ix_(task.free, task.free)
     covariance = np.zeros((AXIS_PARAMETERS, AXIS_PARAMETERS))
     covariance[kept] = np.linalg.pinv(information[kept], hermitian=True)
     step = np.concatenate([covariance @ gradient, np.zeros(KNOTS)])
+    radius = (surface.curve(heights)[0] + found.change_m)[known]
     through = turned_from(surface, heights[known], radius, KNOTS)
-    return _Axis(through.stepped(step), guard, found.sigma, likeness, covariance / share)
-
-
-def _normal_equations(looks: Looks, found: HeightRadii) -> tuple[Floats, Floats]:
-    """Gradient (4,) and information (4, 4) of the axis' parameters, with the radii eliminated (Schur complement)."""
-    weight = tukey(found.residual / found.sigma)[1] * found.sound[looks.place]
-    columns, own = found.columns[:-1] / found.sigma, found.columns[-1] / found.sigma
-    weighted = columns * weight
-    info = np.maximum(np.bincount(looks.place, weight * own**2, looks.count), 1e-300)
-    mixed = np.stack([np.bincount(looks.place, column * own, looks.count) for column in weighted])
-    residual = found.residual / found.sigma
-    pull = np.bincount(looks.place, weight * own * residual, looks.count)
-    return weighted @ residual - mixed @ (pull / info), weighted @ columns.T - (mixed / info) @ mixed.T
+    own = np.maximum(found.sums.own[known], 1e-300)
+    radii = Radii(heights[known], radius, 1.0 / np.sqrt(own), found.sums.mixed[:, known] / own)
+    alike = _likeness(looks, found, task.patch)
+    return _Axis(through.stepped(step), radii, guard, looks.pixels, found.sigma, alike, covariance)
 
 
 def _likeness(looks: Looks, found: HeightRadii, patch: Patch) -> Likeness:
@@ -128,40 +135,30 @@ def _likeness(looks: Looks, found: HeightRadii, patch: Patch) -> Likeness:
     return likeness_of(image)
 
 
-def _smoothed(axis: _Axis, patch: Patch, axis_free: Bools) -> RayFit | None:
-    """The curve that the depths and the prior want about an axis, and what is known of both together.
+def _smoothed(axis: _Axis, task: _Task) -> RayFit:
+    """The curve that the radii and the prior want about an axis, and what is known of both together.
 
     The prior's part of the information makes the intervals of the curve those of Nychka (1988), which hold the truth
     as often as they say on the mean over heights.
     """
-    surface, likeness, sight = axis.surface, axis.likeness, Sight(guard=axis.guard)
-    pixels = _along(surface, patch, sight)
-    every = len(pixels)
-    pixels = spread(pixels, max(int(OVERSAMPLED * likeness.independent_share * every), LEAST_PIXELS))
-    if len(pixels) < 2 * KNOTS:
-        return None
-    depths = depths_of(patch, pixels)
-    share = min(likeness.independent_share * every / len(pixels), 1.0)
+    surface, patch = axis.surface, task.patch
     units = surface.units(surface.high_m - surface.low_m)
-    free = np.arange(len(units)) >= AXIS_PARAMETERS
+    curve = np.arange(len(units)) >= AXIS_PARAMETERS
     scale_m, information = FIRST_SHARE * surface.size_m, np.eye(len(units))
     for _ in range(SMOOTHINGS):
-        measurements: list[Measurement] = [depths, Smoothness.of(surface, scale_m)]
-        refined = refine(surface, measurements, [(axis.sigma, share), UNBENT], tukey, free, units, ITERATIONS)
+        measurements: list[Measurement] = [axis.radii, Smoothness.of(surface, scale_m)]
+        refined = refine(surface, measurements, [(1.0, 1.0), UNBENT], tukey, curve, units, ITERATIONS)
         assert isinstance(refined.surface, Turned)
         surface, information = refined.surface, refined.information
-        scale_m = next_scale(surface, information, scale_m, free)
-    residual = depths.predict(surface).residual
+        scale_m = next_scale(surface, information, scale_m, curve)
     covariance = _joint(axis.covariance, information)
-    free = np.concatenate([axis_free, free[AXIS_PARAMETERS:]])
-    return RayFit(surface, sight, (), free, pixels, residual, axis.sigma, likeness, covariance)
-
-
-def _along(surface: Turned, patch: Patch, sight: Sight) -> Indices:
-    """Pixels beside the stroke that look at the profile, or closely past it."""
-    pixels = near(surface, patch, patch.drawn & np.isfinite(patch.depth_m), sight)
-    height = surface.heights((patch.rays[:, pixels] * patch.depth_m[pixels]).T)
-    return pixels[(height > surface.low_m) & (height < surface.high_m)]
+    pixels = spread(
+        axis.pixels, max(int(OVERSAMPLED * axis.likeness.independent_share * len(axis.pixels)), LEAST_PIXELS)
+    )
+    residual = depths_of(patch, pixels).predict(surface).residual
+    free = np.concatenate([task.free, curve[AXIS_PARAMETERS:]])
+    sight = Sight(guard=axis.guard)
+    return RayFit(surface, sight, task.outlines, free, pixels, residual, axis.sigma, axis.likeness, covariance)
 
 
 def _joint(axis: Floats, information: Floats) -> Floats:
