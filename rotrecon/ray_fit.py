@@ -39,6 +39,8 @@ OVERSAMPLED, LEAST_PIXELS = 20.0, 2500
 """Pixels compared for each independent one, and at least: more would only repeat them."""
 REPEATING = 0.25
 """Likeness of errors above which neighbouring pixels repeat each other."""
+TAMED_PX = 0.3
+"""Distance from the outline within which depths count as if they were that far inside, where errors are alike."""
 SETTLED_SIZE = 1e-4
 """A round that changes the radius by less than this share is the last."""
 NEAR_PX = 4.0
@@ -197,6 +199,8 @@ def _finished(
     scaled, share = depths.residual / sigma, likeness.independent_share
     weight = tukey(scaled)[1]
     columns = depths.columns * (weight > 0) / sigma
+    if likeness.alike > REPEATING:
+        columns *= _tamed(surface, patch, pixels, depths.columns)
     from_outlines = sum(
         (_information(outline.predict(surface), outline_share) for outline, outline_share in outlines),
         start=np.zeros((len(free), len(free))),
@@ -214,6 +218,15 @@ def _finished(
     inverse = np.linalg.pinv(information[kept], hermitian=True)
     covariance[kept] = inverse @ variance[kept] @ inverse
     return RayFit(surface, sight, outlines, free, pixels, depths.residual, sigma, likeness, covariance)
+
+
+def _tamed(surface: Surface, patch: Patch, pixels: Indices, columns: Floats) -> Floats:
+    """Share (N,) of their derivatives that depths are credited with: next to the outline, where they grow without limit,
+    errors that are alike in many pixels do not stay small enough for derivatives to hold."""
+    depth_m = patch.depth_m[pixels]
+    steepest = np.sqrt(surface.size_m * patch.focal_px / (2 * TAMED_PX * depth_m)) / patch.noise.sigma_m(depth_m)
+    by_radius = np.abs(columns[3 if len(columns) == 4 else 4])
+    return np.minimum(1.0, steepest / np.maximum(by_radius, 1e-12))
 
 
 def _information(prediction: Prediction, share: float) -> Floats:
