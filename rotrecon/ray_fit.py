@@ -221,8 +221,8 @@ def _finished(
 
 
 def _tamed(surface: Surface, patch: Patch, pixels: Indices, columns: Floats) -> Floats:
-    """Share (N,) of their derivatives that depths are credited with: next to the outline, where they grow without limit,
-    errors that are alike in many pixels do not stay small enough for derivatives to hold."""
+    """Share (N,) of their derivatives that depths are credited with: next to the outline they grow without limit, and
+    errors that are alike in many pixels are not small enough for derivatives to hold."""
     depth_m = patch.depth_m[pixels]
     steepest = np.sqrt(surface.size_m * patch.focal_px / (2 * TAMED_PX * depth_m)) / patch.noise.sigma_m(depth_m)
     by_radius = np.abs(columns[3 if len(columns) == 4 else 4])

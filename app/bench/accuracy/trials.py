@@ -20,7 +20,7 @@ from rotrecon.settings import Method
 
 POSES = 200
 """Of each object."""
-DRAWS = 3
+DRAWS = 2
 """Noises and drawings of each pose where noise is correlated: intervals of 600 clouds."""
 METHOD: Method = "robust"
 """The one whose accuracy is asked for."""
