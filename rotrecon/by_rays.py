@@ -129,6 +129,7 @@ def _reconstruction(segmented: Reconstruction, found: _Found, radii: SectionRadi
     length_m = None if found.extent is None else found.extent.length_interval_m
     intervals = intervals_of(chosen, middle_m, length_m)
     candidates = candidates_of(found.ranked, chosen, middle_m, settings)
+    margin = candidates[0].score - max((other.score for other in candidates[1:]), default=0.0)
     doubts = doubts_of(chosen, found.soundness, intervals, radii.circles.state, scene, settings)
     rivals = [one for one in found.ranked if one is not chosen and is_possible(one, chosen, settings)]
     low_m, high_m = intervals.diameter_m
@@ -144,7 +145,7 @@ def _reconstruction(segmented: Reconstruction, found: _Found, radii: SectionRadi
         concave=chosen.surface.side > 0,
         doubts=doubts,
         intervals=intervals,
-        evidence=_evidence(segmented, found, scene, radii, certain, candidates[0].score),
+        evidence=_evidence(segmented, found, scene, radii, certain, margin),
     )
     cut = Cut(radii.circles, FittedAxis(found.axis.point_m, found.axis.direction, radii.circles.used))
     result = replace(segmented, fit=fit, sections=radii.sections, second_cut=cut, candidates=candidates)
