@@ -14,7 +14,7 @@ from rotrecon.patch import Patch
 from rotrecon.radii import Shape
 from rotrecon.ray_fit import coarse, coarse_pixels, depths_of, spread
 from rotrecon.starts import Ridge, ball_starts, cone_starts, cylinder_starts, ridge
-from rotrecon.surfaces import Lateral, Surface
+from rotrecon.surfaces import Ball, Lateral, Range, Surface, limited
 
 SCOUT_PIXELS = 150
 """For the starts; the best of them goes on with all coarse pixels."""
@@ -29,16 +29,24 @@ class Held:
 
     direction: Floats | None = None
     """(3,) unit, of its axis."""
-    radius_m: tuple[float, float] | None = None
+    radius_m: Range | None = None
+    """Its lowest and highest; equal when it is known."""
 
     def __post_init__(self) -> None:
         freeze(self)
 
+    def limiting(self, start: Surface) -> Surface:
+        """A start that keeps to the limits of the radius."""
+        return replace(start, radius_m=limited(start.radius_m, self.radius_m), limits_m=self.radius_m)
+
     def free(self, surface: Surface) -> Bools:
         """(k,) which parameters of a surface are to be found."""
         free = np.ones(len(surface.units(1.0)), dtype=np.bool_)
-        if self.direction is not None and len(free) > 4:
+        is_ball = isinstance(surface, Ball)
+        if self.direction is not None and not is_ball:
             free[2:4] = False
+        if self.radius_m is not None and self.radius_m[0] == self.radius_m[1]:
+            free[3 if is_ball else 4] = False
         return free
 
 
@@ -78,12 +86,15 @@ def hypotheses(scene: Scene, held: Held) -> dict[Shape, tuple[float, Surface]]:
         "cone": cone_starts(scene.ridge, held.direction, focal_px),
         "sphere": ball_starts(scene.ridge, points_m, focal_px),
     }
+    limited_starts: dict[Shape, list[Surface]] = {
+        shape: [held.limiting(start) for start in of_shape] for shape, of_shape in starts.items()
+    }
     followed: dict[Shape, Surface] = {
-        shape: _best(scene, held, of_shape) for shape, of_shape in starts.items() if shape != "cone"
+        shape: _best(scene, held, of_shape) for shape, of_shape in limited_starts.items() if shape != "cone"
     }
     cylinder = followed["cylinder"]
     assert isinstance(cylinder, Lateral)
-    followed["cone"] = _best(scene, held, [replace(cylinder, tapers=True), *starts["cone"]])
+    followed["cone"] = _best(scene, held, [replace(cylinder, tapers=True), *limited_starts["cone"]])
     return {shape: (coarse_cost(scene, surface), surface) for shape, surface in followed.items()}
 
 

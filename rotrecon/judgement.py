@@ -39,6 +39,11 @@ def failure_of(chosen: Ranked, soundness: Soundness, scene: Scene, settings: Set
     assert chosen.fit is not None
     surface = chosen.surface
     arc_deg = np.degrees(soundness.arc_rad)
+    limits = surface.limits_m
+    if limits is not None and limits[0] < limits[1] and surface.radius_m in limits:
+        beyond = "smaller" if surface.radius_m == limits[0] else "larger"
+        advice = f"the object is {beyond} than the diameters that were given; widen them"
+        return FitFailure(FailureReason.CONSTRAINED, advice)
     unsure = radius_sigma(chosen.fit) / surface.size_m
     if unsure > settings.flat_sigma_over_radius or soundness.arc_rad < settings.flat_arc_rad:
         advice = f"what is drawn is flat: no radius can be told from it, {arc_deg:.0f} degrees are seen; {DRAW_CLOSE}"

@@ -17,6 +17,7 @@ FLANK = 1e-9
 SMALLEST = 1e-12
 """Least discriminant that is told from zero, m^2."""
 
+Range = tuple[float, float]
 Rays = Floats
 """(3, N) x, y and 1: directions in camera coordinates, with z = 1, so that the parameter along them is depth."""
 
@@ -85,6 +86,8 @@ class Lateral:
     """Whether the slope is a parameter."""
     side: Literal[-1, 1] = -1
     """-1 seen from outside, 1 from inside."""
+    limits_m: Range | None = None
+    """Of the radius, which no step leaves."""
 
     def __post_init__(self) -> None:
         freeze(self)
@@ -175,7 +178,7 @@ class Lateral:
             self,
             center_m=self.center_m + step[0] * across + step[1] * toward,
             turn=np.stack([turned, _cross(direction, turned), direction]),
-            radius_m=self.radius_m + float(step[4]),
+            radius_m=limited(self.radius_m + float(step[4]), self.limits_m),
             slope=self.slope + float(step[5]) if self.tapers else self.slope,
         )
 
@@ -189,6 +192,8 @@ class Ball:
     radius_m: float
     focal_px: float
     side: Literal[-1, 1] = -1
+    limits_m: Range | None = None
+    """Of the radius, which no step leaves."""
 
     def __post_init__(self) -> None:
         freeze(self)
@@ -231,10 +236,16 @@ class Ball:
 
     def stepped(self, step: Floats) -> "Ball":
         """The surface after a step (4,) of its parameters."""
-        return replace(self, center_m=self.center_m + step[:3], radius_m=self.radius_m + float(step[3]))
+        radius_m = limited(self.radius_m + float(step[3]), self.limits_m)
+        return replace(self, center_m=self.center_m + step[:3], radius_m=radius_m)
 
 
 Surface = Lateral | Ball
+
+
+def limited(value: float, limits: Range | None) -> float:
+    """The value, or the limit that it lies beyond."""
+    return value if limits is None else min(max(value, limits[0]), limits[1])
 
 
 def _cross(first: Floats, second: Floats) -> Floats:
