@@ -2,6 +2,7 @@
 
 import json
 import sys
+from math import inf
 from pathlib import Path
 from typing import Annotated, Literal
 
@@ -11,7 +12,7 @@ from app.describe import describe, describe_result
 from app.drawing_text import parse_area, parse_axis, stroke_text
 from app.host import HostError
 from rotrecon.answer import answer, cannot
-from rotrecon.drawing import Drawing, DrawingError
+from rotrecon.drawing import Constraints, Direction, Drawing, DrawingError
 from rotrecon.errors import SceneError
 from rotrecon.files import write_whole
 from rotrecon.frame import Capture, Frame, FrameUnavailable
@@ -64,6 +65,10 @@ def fit(
     kind: Annotated[
         Literal["auto", "cylinder", "rod", "sphere", "cone"], typer.Option(help="What it is, if you know.")
     ] = "auto",
+    diameter: Annotated[
+        str | None, typer.Option(metavar="LOW,HIGH", help="Its limits, mm; one number if it is known.")
+    ] = None,
+    direction: Annotated[Direction, typer.Option(help="How its axis lies; plane: square to the table.")] = "free",
     method: MethodName = Settings.method,
     tools: ToolFile = None,
     json_: Annotated[bool, typer.Option("--json", help="Print one JSON object.")] = False,
@@ -71,7 +76,12 @@ def fit(
     layers: Layers = 2,
 ) -> None:
     """Measure the object that a drawing points at. Exits with 0 for a result, 3 for a reasoned "cannot"."""
-    drawing = Drawing(parse_area(area), None if axis is None else parse_axis(axis), None if kind == "auto" else kind)
+    drawing = Drawing(
+        parse_area(area),
+        None if axis is None else parse_axis(axis),
+        None if kind == "auto" else kind,
+        constraints=Constraints(None if diameter is None else _radius_m(diameter), direction),
+    )
     settings = Settings(method=method, layers=layers, tools=default_tools() if tools is None else read_tools(tools))
     if overlay is not None and overlay.suffix.lower() != ".png":
         raise typer.BadParameter(f"--overlay {overlay} is not a PNG; name a file that ends in .png")
@@ -86,6 +96,16 @@ def fit(
     typer.echo(_json(answer(result)) if json_ else _in_words(result, proposed=axis is None))
     if isinstance(result.fit, FitFailure):
         raise typer.Exit(CANNOT)
+
+
+def _radius_m(diameter: str) -> tuple[float, float]:
+    try:
+        ends = [float(word) for word in diameter.split(",")]
+    except ValueError:
+        ends = []
+    if len(ends) not in (1, 2) or not 0 < ends[0] <= ends[-1] < inf:
+        raise typer.BadParameter(f"--diameter {diameter} is no diameter in mm; write limits as 60,70 or one number")
+    return (ends[0] / 2000, ends[-1] / 2000)
 
 
 def _in_words(result: Reconstruction, proposed: bool) -> str:

@@ -232,3 +232,27 @@ def test_fit_proposes_the_axis_that_is_left_out_and_says_so(rotrecon, scene):
     again = rotrecon("fit", scene, *area, "--axis", proposed.group(1))[1]
     assert "axis proposed" not in again
     assert again.splitlines()[0] == out.splitlines()[0], "the proposed axis, given, measures the same"
+
+
+def test_a_diameter_that_is_known_and_one_within_limits_are_kept(rotrecon, scene):
+    fit = ["fit", scene, *drawing_of(scene), "--json"]
+    free = json.loads(rotrecon(*fit)[1])["diameter_mm"]
+    known = json.loads(rotrecon(*fit, "--diameter", f"{free + 0.05}")[1])
+    assert known["diameter_mm"] == pytest.approx(free + 0.05, abs=1e-6)
+    within = json.loads(rotrecon(*fit, "--diameter", f"{free - 5},{free + 5}")[1])
+    assert within["diameter_mm"] == pytest.approx(free, abs=0.01)
+
+
+def test_a_direction_that_is_held_is_that_of_the_axis(rotrecon):
+    recorded = ["fit", recording("tin"), "--area", "270,50 380,232", "--axis", "325,75 325,222", "--json"]
+    free = json.loads(rotrecon(*recorded)[1])
+    held = json.loads(rotrecon(*recorded, "--direction", "plane")[1])
+    assert held["axis"]["direction"] != free["axis"]["direction"]
+    assert np.dot(held["axis"]["direction"], free["axis"]["direction"]) > np.cos(np.deg2rad(10))
+
+
+@pytest.mark.parametrize("diameter", ["70,60", "0", "-5,60", "nan", "inf", "60,inf", "thick", "1,2,3", "", "60,"])
+def test_a_diameter_that_cannot_be_is_refused(rotrecon, scene, diameter):
+    code, _, err = rotrecon("fit", scene, *drawing_of(scene), "--diameter", diameter)
+    assert code == 2
+    assert "write limits as 60,70" in err
