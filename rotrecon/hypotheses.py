@@ -7,12 +7,13 @@ import numpy as np
 
 from rotrecon.arrays import Bools, Floats, Indices, freeze
 from rotrecon.camera import PinholeCamera
+from rotrecon.coarse_fit import coarse, coarse_pixels
 from rotrecon.drawing import CrossSegments
 from rotrecon.fitting import Outline, cauchy
 from rotrecon.limbs import ANY_GAP_PX, mask_outline
 from rotrecon.patch import Patch
 from rotrecon.radii import Shape
-from rotrecon.ray_fit import coarse, coarse_pixels, depths_of, spread
+from rotrecon.ray_fit import depths_of, spread
 from rotrecon.starts import Ridge, ball_starts, cone_starts, cylinder_starts, ridge
 from rotrecon.surfaces import Ball, Lateral, Range, Surface, limited
 

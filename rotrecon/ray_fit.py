@@ -1,20 +1,17 @@
-"""One kind of surface fitted to a patch: coarse from a start, then fine, with the weight that each measurement has."""
+"""A surface fitted to all depths of a patch that are compared, and to an outline, each with the weight it has."""
 
-from dataclasses import dataclass, replace
+from dataclasses import dataclass
 
 import numpy as np
 
 from rotrecon.arrays import Bools, Floats, Indices, freeze
 from rotrecon.correlation import Likeness, likeness_of
-from rotrecon.drawing import CrossSegments
 from rotrecon.fitting import (
-    TO_SIGMA,
     Depths,
     MatchedDepths,
     Measurement,
     Outline,
     Prediction,
-    cauchy,
     refine,
     robust_scale,
     tukey,
@@ -22,19 +19,7 @@ from rotrecon.fitting import (
 from rotrecon.patch import Patch
 from rotrecon.surfaces import Surface
 
-COARSE_PIXELS = 1200
-"""Enough to find the way; the fine rounds take all."""
-COARSE_SCALE = 0.2
-"""First scale of the coarse rounds over the radius, along the ray."""
-SHRINK = 4.0
-"""From one scale to the next."""
-LAST_SCALE = 2.0
-"""The coarse rounds end at this multiple of the noise."""
-OUTLINE_SCALE = 0.1
-"""Scale of the outline's residuals over that of the depths in coarse rounds, at least one sigma."""
-FOLLOWED_PX, FOLLOWED_SHARE = (4.0, 1.0), 0.2
-"""Scales at which a surface first follows the edges, and the say that its depths have meanwhile."""
-COARSE_ITERATIONS, FOLLOWING_ITERATIONS, FINE_ITERATIONS, FINE_ROUNDS = 6, 10, 8, 3
+FINE_ITERATIONS, FINE_ROUNDS = 8, 3
 OVERSAMPLED, LEAST_PIXELS = 20.0, 2500
 """Pixels compared for each independent one, and at least: more would only repeat them."""
 REPEATING = 0.25
@@ -47,8 +32,6 @@ NEAR_PX = 4.0
 """Pixels so far outside the outline still speak for or against it."""
 INLIER_SIGMA = 3.0
 """Residuals beyond are not asked how alike they are."""
-LIMB_SHARE = 0.1
-"""Of a section, at each side."""
 GOLDEN = 0.6180339887498949
 """Fractional parts of its multiples fall evenly, whatever the picture's own period."""
 WHOLE = 1e3
@@ -92,63 +75,6 @@ class RayFit:
     def independent(self) -> float:
         """How many of the depths err independently."""
         return len(self.pixels) * self.likeness.independent_share
-
-
-def coarse(
-    start: Surface,
-    patch: Patch,
-    pixels: Indices,
-    units: Floats,
-    free: Bools,
-    outline: Outline | None,
-) -> Surface:
-    """A surface after rounds over some pixels, from a start down to the scale of what is left."""
-    depths = depths_of(patch, pixels)
-    measurements: list[Measurement] = [depths, *([outline] if outline is not None else [])]
-    sigma_m = float(np.median(patch.noise.sigma_m(patch.depth_m[pixels])))
-    scale, surface = max(COARSE_SCALE * start.size_m / sigma_m, LAST_SCALE), start
-    while True:
-        weighting = [(scale, 1.0), (max(OUTLINE_SCALE * scale, 1.0), 1.0)][: len(measurements)]
-        refined = refine(surface, measurements, weighting, cauchy, free, units, COARSE_ITERATIONS)
-        surface = refined.surface
-        left = TO_SIGMA * float(np.median(np.abs(depths.predict(surface).residual)))
-        if max(left, LAST_SCALE) >= scale / 2:
-            return surface
-        scale = max(scale / SHRINK, left, LAST_SCALE)
-
-
-def follow(
-    surface: Surface,
-    patch: Patch,
-    pixels: Indices,
-    units: Floats,
-    free: Bools,
-    outlines: tuple[Outline, Outline | None],
-) -> Surface:
-    """A surface moved until its outline is where edges are, some of its depths and the mask's outline having a say."""
-    depths = depths_of(patch, pixels)
-    scale = max(robust_scale(depths.predict(surface).residual), LAST_SCALE)
-    edges, mask = outlines
-    measurements: list[Measurement] = [depths, replace(edges, sigma_px=np.ones(len(edges)))]
-    measurements += [] if mask is None else [mask]
-    for edge_scale in FOLLOWED_PX:
-        weighting = [(scale, FOLLOWED_SHARE), (edge_scale, 1.0), (edge_scale, FOLLOWED_SHARE)][: len(measurements)]
-        surface = refine(surface, measurements, weighting, cauchy, free, units, FOLLOWING_ITERATIONS).surface
-    return surface
-
-
-def coarse_pixels(patch: Patch, segments: CrossSegments, kept: Bools) -> Indices:
-    """Some of the segmented pixels, evenly, without those nearest to the limbs, whose depth is believed least.
-
-    `kept` (S, W) are the segmented cells.
-    """
-    count = kept.sum(axis=1, keepdims=True)
-    rank = kept.cumsum(axis=1)
-    inner = kept & (rank > LIMB_SHARE * count) & (rank <= (1 - LIMB_SHARE) * count)
-    width = patch.camera.width
-    place = np.stack(np.divmod(segments.pixel[inner], width)[::-1], axis=-1)
-    pixels = patch.pixel_of(place.astype(np.float64))
-    return spread(np.unique(pixels[np.isfinite(patch.depth_m[pixels])]), COARSE_PIXELS)
 
 
 def fine(

@@ -5,12 +5,13 @@ from operator import itemgetter
 
 import numpy as np
 
+from rotrecon.coarse_fit import follow
 from rotrecon.fitting import TUKEY, Outline, tukey
 from rotrecon.guard import Outlines, Task, doubting, settle
 from rotrecon.hypotheses import Held, Scene, coarse_cost, hypotheses
 from rotrecon.limbs import SeenOutline, seen_outline
 from rotrecon.radii import Shape
-from rotrecon.ray_fit import RayFit, Sight, fine, follow, predicted
+from rotrecon.ray_fit import RayFit, Sight, fine, predicted
 from rotrecon.surfaces import Ball, Lateral, Surface
 
 PARAMETERS: dict[Shape, int] = {"cylinder": 5, "cone": 6, "sphere": 4}
@@ -71,12 +72,12 @@ def _following(
     From a surface that has followed one side of it, the other may be seen too.
     """
     seen = SeenOutline(None, 0)
-    for _ in range(OUTLINE_ROUNDS):
+    for round_ in range(OUTLINE_ROUNDS):
         order = [surface for _, surface in sorted(found.values(), key=itemgetter(0))]
         if isinstance(order[0], Ball):
             # the edge of a ball, everywhere as bright as what is behind it or brighter, is seen too far inside
             return (), found
-        for surface in (*order, *_tapered(order[0])):
+        for surface in (*order, *_tapered(order[0])) if round_ == 0 else order[:1]:
             if seen.sides == 2:
                 break
             other = seen_outline(surface, scene.patch, scene.segments, scene.length_m)

@@ -1,13 +1,14 @@
 """Where a turned surface starts: an axis and a rough profile, from the segmented points alone."""
 
 from dataclasses import dataclass, replace
-from itertools import pairwise
 
 import numpy as np
 
 from rotrecon.arrays import Bools, Floats, Indices, freeze
+from rotrecon.coarse_fit import OUTLINE_SCALE
 from rotrecon.extent import Extent
-from rotrecon.fitting import TO_SIGMA, Measurement, Prediction, cauchy, refine
+from rotrecon.fitting import TO_SIGMA, Measurement, Outline, Prediction, cauchy, refine
+from rotrecon.looks import medians
 from rotrecon.patch import Patch
 from rotrecon.ray_fit import spread
 from rotrecon.smoothness import UNBENT, Smoothness
@@ -69,7 +70,13 @@ class Points:
 
 
 def turned_start(
-    patch: Patch, edge: Ridge, lateral: Lateral | None, held: Bools, extent: Extent | None, knots: int
+    patch: Patch,
+    edge: Ridge,
+    lateral: Lateral | None,
+    held: Bools,
+    extent: Extent | None,
+    outlines: tuple[tuple[Outline, float], ...],
+    knots: int,
 ) -> Turned | None:
     """A rough turned surface, from the axis of a lateral one or from axes at several slants behind the stroke.
 
@@ -84,14 +91,14 @@ def turned_start(
         starts += _slanted(longest_run(edge), patch.focal_px)
     profiles = [rough_profile(start, points.points_m, extent, ROUGH_KNOTS) for start in starts]
     scouts = points.chosen(spread(np.arange(len(points), dtype=np.int32), SCOUTS))
-    followed = [_followed(profile, scouts, held, 1) for profile in profiles if profile is not None]
+    followed = [_followed(profile, scouts, outlines, held) for profile in profiles if profile is not None]
     if not followed:
         return None
     rough = min(followed, key=lambda one: one[0])[1]
     for _ in range(ROUNDS):
         # about a better axis the points have other heights
         again = rough_profile(rough, points.points_m, extent, ROUGH_KNOTS)
-        rough = _followed(again or rough, points, held, 1)[1]
+        rough = _followed(again or rough, points, outlines, held)[1]
     at = np.linspace(rough.low_m, rough.high_m, 4 * knots)
     return turned_from(rough, at, rough.curve(at)[0], knots)
 
@@ -119,26 +126,24 @@ def longest_run(edge: Ridge) -> Ridge:
     return Ridge(edge.points_m[run], edge.width_m[run])
 
 
-def _followed(start: Turned, points: Points, held: Bools, rounds: int) -> tuple[float, Turned]:
-    """Scale of the distances left and surface after rounds over the points that are close to a start."""
-    surface = start
+def _followed(
+    start: Turned, points: Points, outlines: tuple[tuple[Outline, float], ...], held: Bools
+) -> tuple[float, Turned]:
+    """Cost and surface after a round over the outline and the points that are close to a start."""
     size_m = float(np.median(start.curve(np.linspace(start.low_m, start.high_m, ROUGH_KNOTS))[0]))
     close = points.chosen(_close(start, points.points_m))
     measurements: list[Measurement] = [close, Smoothness.of(start, STIFF_SHARE * size_m)]
+    measurements += [outline for outline, _ in outlines]
+    scale = max(TO_SIGMA * float(np.median(np.abs(close.predict(start).residual))), 1.0) if len(close) else 1.0
+    edges = [(max(OUTLINE_SCALE * scale, 1.0), share) for _, share in outlines]
     units = start.units(start.high_m - start.low_m)
     free = np.ones(len(units), dtype=np.bool_)
     free[2:AXIS_PARAMETERS] = ~held
-    for _ in range(rounds):
-        scale = max(_left(close, surface), 1.0)
-        refined = refine(surface, measurements, [(scale, 1.0), UNBENT], cauchy, free, units, ITERATIONS)
-        assert isinstance(refined.surface, Turned)
-        surface = refined.surface
-    return _left(points, surface), surface
-
-
-def _left(points: Points, surface: Turned) -> float:
-    """Scale of the distances of most points."""
-    return TO_SIGMA * float(np.median(np.abs(points.predict(surface).residual)))
+    surface = refine(start, measurements, [(scale, 1.0), UNBENT, *edges], cauchy, free, units, ITERATIONS).surface
+    assert isinstance(surface, Turned)
+    cost = float(cauchy(points.predict(surface).residual)[0].mean())
+    cost += sum(float(cauchy(outline.predict(surface).residual)[0].mean()) for outline, _ in outlines)
+    return cost, surface
 
 
 def _close(surface: Turned, points_m: Floats) -> Bools:
@@ -160,11 +165,12 @@ def rough_profile(lateral: Lateral, points_m: Floats, extent: Extent | None, kno
     low, high = (extent.low_m, extent.high_m) if extent else np.quantile(height, HEIGHT_QUANTILES)
     if high <= low:
         return None
-    edges = np.linspace(low, high, knots + 1)
-    counted = [out[(height >= first) & (height < last)] for first, last in pairwise(edges)]
-    known = np.array([len(one) >= FEWEST_PIXELS for one in counted])
+    within = (height >= low) & (height <= high)
+    place = np.minimum((height[within] - low) / (high - low) * knots, knots - 1).astype(np.int32)
+    radius = medians(out[within], place, knots, FEWEST_PIXELS)
+    known = np.isfinite(radius)
     if known.sum() < 2:
         return None
-    radius = np.array([float(np.median(one)) for one in counted if len(one) >= FEWEST_PIXELS])
     at = np.linspace(low, high, 4 * knots)
-    return turned_from(lateral, at, np.interp(at, ((edges[1:] + edges[:-1]) / 2)[known], radius), knots)
+    middle = low + (np.arange(knots) + 0.5) * (high - low) / knots
+    return turned_from(lateral, at, np.interp(at, middle[known], radius[known]), knots)
