@@ -16,7 +16,7 @@ SEGMENTED = ["segmentation", "circles", "axis", "tools", "reconstruction", "sect
 BY_SECTIONS = ["radii", "section_fit", "by_sections"]
 BY_RAYS = [
     "surfaces", "patch", "correlation", "fitting", "ray_fit", "starts", "edge_lines", "edge_steps", "edges", "limbs",
-    "guard", "hypotheses", "robust", "extent", "turned", "height_radii", "profile", "parts", "smoothness",
+    "guard", "hypotheses", "robust", "extent", "turned", "looks", "height_radii", "profile", "parts", "smoothness",
     "turned_start", "turned_fit", "intervals", "recognition", "soundness", "judgement", "section_radii", "by_rays",
 ]  # fmt: skip
 SHOWN = ["answer", "overlay", "mesh"]
