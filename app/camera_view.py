@@ -33,6 +33,7 @@ JPEG_QUALITY = 85
 KEY_MODIFIERS = ("cmd/ctrl", "alt", "cmd/ctrl+alt", "cmd/ctrl+shift", "alt+shift", "cmd/ctrl+alt+shift")
 
 HandleDragged = Callable[[Part, int, SceneNodeDragEvent], None]
+PictureDragged = Callable[[SceneNodeDragEvent], Coroutine[Any, Any, None]]
 
 
 async def _nothing(_: SceneNodeDragEvent) -> None:
@@ -42,8 +43,10 @@ async def _nothing(_: SceneNodeDragEvent) -> None:
 class CameraView:
     """Nodes of one page, named the same for as long as it is open, in camera coordinates under `/view`."""
 
-    def __init__(self, client: ClientHandle, frame: Frame, picture: Bytes, on_handle: HandleDragged) -> None:
-        self._client, self._frame, self._on_handle = client, frame, on_handle
+    def __init__(
+        self, client: ClientHandle, frame: Frame, picture: Bytes, on_handle: HandleDragged, on_picture: PictureDragged
+    ) -> None:
+        self._client, self._frame, self._on_handle, self._on_picture = client, frame, on_handle, on_picture
         scene, T = client.scene, frame.T_base_camera
         self._root = scene.add_frame(
             "/view", show_axes=False, wxyz=tf.SO3.from_matrix(T[:3, :3]).wxyz, position=T[:3, 3]
@@ -194,6 +197,7 @@ class CameraView:
             f"/view/handle{number}", 1.0, subdivisions=2, visible=False, cast_shadow=False, receive_shadow=False
         )
         handle.on_drag("left")(self._handle_callback(number))
+        handle.on_drag("left", modifier="shift")(self._on_picture)  # an axis may begin where another one ends
         return handle
 
     def _handle_callback(self, number: int) -> Callable[[SceneNodeDragEvent], Coroutine[Any, Any, None]]:

@@ -3,6 +3,7 @@
 from dataclasses import dataclass
 
 from app.object_drawing import Part, Pixel
+from rotrecon.drawing import Direction
 from rotrecon.primitives import Kind
 from rotrecon.reconstruction import Reconstruction
 
@@ -71,7 +72,7 @@ class PageLeft:
 
 @dataclass(frozen=True)
 class Cleared:
-    """Area and axis of the selected object are taken away."""
+    """Area and axis of the selected object are taken away; what is known of it stays."""
 
 
 @dataclass(frozen=True)
@@ -96,6 +97,21 @@ class KindChosen:
     """The kind of solid to fit; None lets the program decide."""
 
     kind: Kind | None
+
+
+@dataclass(frozen=True)
+class DirectionChosen:
+    """How the object's axis lies."""
+
+    direction: Direction
+
+
+@dataclass(frozen=True)
+class DiameterTyped:
+    """The limits of the object's diameter, in either order; 0 is none."""
+
+    from_mm: float
+    to_mm: float
 
 
 @dataclass(frozen=True)
@@ -131,6 +147,8 @@ Event = (
     | Redone
     | ToolChosen
     | KindChosen
+    | DirectionChosen
+    | DiameterTyped
     | SectionToggled
     | SectionsRestored
     | Reconstructed

@@ -39,10 +39,10 @@ def hint(session: Session) -> str:
     if shown.area is None:
         choose = "choose Area, and " if session.tool == "axis" else ""
         return f"Now draw the area: {choose}drag a rectangle round the object."
-    if shown.axis is None:
-        return "Now draw the object's axis: shift + drag along its middle, or choose Axis."
     if session.preview is not None:
         return "Let go where it is right; the result follows."
     if not session.up_to_date:
         return "Measuring \N{HORIZONTAL ELLIPSIS}"
+    if shown.proposed:
+        return "Measured. The axis is proposed: drag its ends, or draw another (shift + drag, or choose Axis)."
     return "Measured. Drag the handles to correct the drawing, or draw anew for another object."

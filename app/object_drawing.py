@@ -1,10 +1,10 @@
 """What has been drawn of one object, and how its parts change when one of them is moved."""
 
 from dataclasses import dataclass, replace
-from math import copysign, isfinite
+from math import copysign, inf, isfinite
 from typing import Literal
 
-from rotrecon.drawing import AreaOfInterest, Drawing, ObjectAxis
+from rotrecon.drawing import AreaOfInterest, Constraints, Direction, Drawing, ObjectAxis
 from rotrecon.primitives import Kind
 
 Pixel = tuple[float, float]
@@ -12,6 +12,8 @@ Part = Literal["area", "axis"]
 PARTS: tuple[Part, ...] = ("area", "axis")
 SMALLEST_PX = 4.0
 """Side of a rectangle that is still meant as one: enough to be seen and grabbed again."""
+UNKNOWN_MM = (0.0, 0.0)
+"""Typed limits of a diameter of which nothing is known."""
 
 
 @dataclass(frozen=True)
@@ -22,13 +24,26 @@ class ObjectDrawing:
     axis: ObjectAxis | None = None
     kind: Kind | None = None
     excluded_sections: frozenset[int] = frozenset()
+    diameter_mm: tuple[float, float] = UNKNOWN_MM
+    """Its limits as they were typed, in either order; 0 is none."""
+    direction: Direction = "free"
+    proposed: bool = False
+    """Whether the axis is the program's, and not drawn: then it belongs to the area it was proposed for."""
+
+    @property
+    def constraints(self) -> Constraints:
+        """What is known before it is measured."""
+        if self.diameter_mm == UNKNOWN_MM:
+            return Constraints(None, self.direction)
+        low_mm, high_mm = sorted((self.diameter_mm[0], self.diameter_mm[1] or inf))
+        return Constraints((low_mm / 2000, high_mm / 2000), self.direction)
 
     @property
     def complete(self) -> Drawing | None:
-        """The drawing that can be measured, once area and axis are there."""
-        if self.area is None or self.axis is None:
+        """The drawing that can be measured, once the area is there; where it has no axis, one is proposed."""
+        if self.area is None:
             return None
-        return Drawing(self.area, self.axis, self.kind, self.excluded_sections)
+        return Drawing(self.area, self.axis, self.kind, self.excluded_sections, self.constraints)
 
     @property
     def middle_px(self) -> Pixel | None:
@@ -41,6 +56,7 @@ class ObjectDrawing:
 
 def with_area(drawn: ObjectDrawing, area: AreaOfInterest) -> ObjectDrawing:
     """The object with a new area; an axis that lies elsewhere was meant for another object."""
+    drawn = without_proposal(drawn)
     axis = drawn.axis
     if axis is not None:
         middle = [(a + b) / 2 for a, b in zip(axis.start_px, axis.end_px, strict=True)]
@@ -48,6 +64,16 @@ def with_area(drawn: ObjectDrawing, area: AreaOfInterest) -> ObjectDrawing:
             if not min(along) <= value <= max(along):
                 axis = None
     return replace(drawn, area=area, axis=axis)
+
+
+def with_axis(drawn: ObjectDrawing, axis: ObjectAxis, proposed: bool = False) -> ObjectDrawing:
+    """The object with an axis, the operator's unless it is proposed."""
+    return replace(drawn, axis=axis, proposed=proposed)
+
+
+def without_proposal(drawn: ObjectDrawing) -> ObjectDrawing:
+    """The object as it was drawn, for an area that changes."""
+    return replace(drawn, axis=None, proposed=False) if drawn.proposed else drawn
 
 
 def with_corner(area: AreaOfInterest, index: int, point: Pixel) -> AreaOfInterest:

@@ -47,8 +47,11 @@ class PageView:
         self._pictures, self._scene, self._post = pictures, scene, post
         self._pixels = PixelFinder(pictures.frame)
         self._panels = PagePanels(client, shared, pictures, post)
-        self._camera_view = CameraView(client, pictures.frame, pictures.frame.image, self._handle_dragged)
+        self._camera_view = CameraView(
+            client, pictures.frame, pictures.frame.image, self._handle_dragged, self._dragged
+        )
         self._world = client.scene.add_frame("/world", show_axes=False)
+        self._drag_start_px: Pixel = (0.0, 0.0)
         self._picture_of: object = (None, 0.0, None)
         self._lit: object = None
         self._view = ""
@@ -150,11 +153,15 @@ class PageView:
 
     async def _dragged(self, event: SceneNodeDragEvent) -> None:
         start, end = self._pixels.dragged(event)
-        if event.phase != "start":
+        if event.phase == "start":
+            self._drag_start_px = start  # of a drag from a handle, it moves along with that
+        else:
             if event.phase == "end":
                 self._touched(end)
             reach_px = self._camera_view.closing_reach_px(self.state)
-            self._post(PointerDragged(start, end, event.modifier == "shift", event.phase == "end", reach_px))
+            self._post(
+                PointerDragged(self._drag_start_px, end, event.modifier == "shift", event.phase == "end", reach_px)
+            )
 
     def _handle_dragged(self, part: Part, index: int, event: SceneNodeDragEvent) -> None:
         _, end = self._pixels.dragged(event)

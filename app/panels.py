@@ -9,6 +9,8 @@ from viser import GuiEvent, ViserServer
 from app.events import (
     Cancelled,
     Cleared,
+    DiameterTyped,
+    DirectionChosen,
     Event,
     KindChosen,
     PolygonClosed,
@@ -17,6 +19,8 @@ from app.events import (
     Undone,
     VertexTakenBack,
 )
+from app.knowledge import DIRECTION_NAMES, knowledge_text
+from app.object_drawing import UNKNOWN_MM
 from app.page import PageEvent, SectionStepped, ViewChosen, Zoomed
 from app.result_text import hint_html, result_html, why_html
 from app.session import Session
@@ -26,6 +30,8 @@ from rotrecon.primitives import KINDS
 PANEL_WIDTH_PX = 390
 TABS = ("Sections", "Picture", "Why", "Buttons", "Help")
 AUTO = "auto"
+KNOWN = "What is known"
+DIRECTIONS = {name: DirectionChosen(direction) for direction, name in DIRECTION_NAMES.items()}
 TOOLS = {"Area": ToolChosen("area"), "Axis": ToolChosen("axis")}
 POLYGON = {"Close": PolygonClosed(), "Corner back": VertexTakenBack(), "Cancel": Cancelled()}
 HISTORY = {"Undo": Undone(), "Redo": Redone(), "Clear": Cleared()}
@@ -63,6 +69,7 @@ class Panels:
         self._result = self._gui.add_html("")
         self._kind = self._gui.add_dropdown("Object is a", (AUTO, *KINDS), initial_value=AUTO)
         self._kind.on_update(self._choosing(lambda value: KindChosen(None if value == AUTO else value)))
+        self._add_knowledge()
         self._tool = self._gui.add_dropdown("A drag draws", tuple(TOOLS), hint="Shift + drag: the axis")
         self._tool.on_update(self._choosing(TOOLS.get))
         self._add_buttons("Drawing", HISTORY)
@@ -84,9 +91,28 @@ class Panels:
         _set(self._hint, "content", hint_html(session))
         _set(self._result, "content", result_html(session))
         _set(self._kind, "value", session.shown.kind or AUTO)
+        _set(self._direction, "value", DIRECTION_NAMES[session.shown.direction])
+        _set(self._diameter, "value", session.shown.diameter_mm)
+        known = knowledge_text(session.shown)
+        _set(self._known, "label", f"{KNOWN}: {known}" if known else KNOWN)
         _set(self._tool, "value", session.tool.capitalize())
         if session.preview is None:
             _set(self._why, "content", why_html(session))
+
+    def _add_knowledge(self) -> None:
+        """Folded away: what is in force stands in its label."""
+        self._known = self._gui.add_folder(KNOWN, expand_by_default=False)
+        with self._known:
+            self._direction = self._gui.add_dropdown("Axis lies", tuple(DIRECTIONS))
+            self._diameter = self._gui.add_vector2(
+                "Diameter from / to, mm",
+                UNKNOWN_MM,
+                min=UNKNOWN_MM,
+                step=0.1,
+                hint="0: not known; the same twice: held",
+            )
+        self._direction.on_update(self._choosing(DIRECTIONS.get))
+        self._diameter.on_update(self._choosing(lambda typed: DiameterTyped(*map(float, typed))))
 
     def _add_controls(self) -> None:
         for label, events in (("Polygon", POLYGON), ("Zoom", ZOOM), ("Section", SECTION)):

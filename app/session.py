@@ -6,6 +6,8 @@ from typing import Literal
 from app.events import (
     Cancelled,
     Cleared,
+    DiameterTyped,
+    DirectionChosen,
     Event,
     HandleMoved,
     KindChosen,
@@ -22,6 +24,7 @@ from app.events import (
     VertexClicked,
     VertexTakenBack,
 )
+from app.knowledge import with_knowledge
 from app.object_drawing import (
     PARTS,
     SMALLEST_PX,
@@ -31,11 +34,12 @@ from app.object_drawing import (
     distance_px,
     on_frame,
     with_area,
+    with_axis,
     with_corner,
+    without_proposal,
 )
 from rotrecon.drawing import AreaOfInterest, DrawingError, ObjectAxis, check_area
 from rotrecon.outcome import FitFailure
-from rotrecon.primitives import KINDS
 from rotrecon.reconstruction import Reconstruction
 
 HISTORY_LENGTH = 200
@@ -114,7 +118,7 @@ def step(session: Session, event: Event) -> Session:
             after = replace(after, measured=None)
     elif after.vertices_px != session.vertices_px:
         after = replace(after, notice=None)
-    return _told(after)
+    return _told(_axis_adopted(after))
 
 
 def _applied(session: Session, event: Event) -> Session:
@@ -137,24 +141,24 @@ def _applied(session: Session, event: Event) -> Session:
         case PageLeft():
             return replace(session, drag="none", preview=None)
         case Cleared():
-            kept = ObjectDrawing(kind=session.objects[session.selected].kind)
-            return _changed(replace(session, vertices_px=()), kept)
+            kept = replace(session.objects[session.selected], area=None, axis=None, proposed=False)
+            return _changed(replace(session, vertices_px=()), replace(kept, excluded_sections=frozenset()))
         case Undone():
             return _undone(session)
         case Redone():
             return _redone(session)
         case ToolChosen():
             return replace(session, tool=event.tool) if event.tool in PARTS else session
-        case KindChosen() if event.kind is None or event.kind in KINDS:
-            return _changed(session, replace(session.objects[session.selected], kind=event.kind))
+        case KindChosen() | DirectionChosen():
+            return _changed(session, with_knowledge(session.objects[session.selected], event))
+        case DiameterTyped():
+            return _typed(session, event)
         case SectionToggled():
             return _section_toggled(session, event.section)
         case SectionsRestored():
             return _changed(session, replace(session.objects[session.selected], excluded_sections=frozenset()))
         case Reconstructed():
             return _reconstructed(session, event)
-        case KindChosen():
-            return session
 
 
 def _dragging(session: Session, finished: bool) -> Session:
@@ -172,7 +176,7 @@ def _dragged(session: Session, event: PointerDragged) -> Session:
         return _clicked(session, VertexClicked(end, event.reach_px)) if event.finished else session
     drawn = replace(session.objects[session.selected], excluded_sections=frozenset())
     if is_axis:
-        drawn = replace(drawn, axis=ObjectAxis(start, end))
+        drawn = with_axis(drawn, ObjectAxis(start, end))
     else:
         if min(abs(a - b) for a, b in zip(start, end, strict=True)) < SMALLEST_PX:
             return replace(session, preview=None)
@@ -213,9 +217,10 @@ def _handle_moved(session: Session, event: HandleMoved) -> Session:
     drawn = replace(drawn, excluded_sections=frozenset())
     if event.part == "axis" and drawn.axis is not None and event.index in (0, 1):
         ends = (point, drawn.axis.end_px) if event.index == 0 else (drawn.axis.start_px, point)
-        return _drawn(session, replace(drawn, axis=ObjectAxis(*ends)), event.finished)
+        return _drawn(session, with_axis(drawn, ObjectAxis(*ends)), event.finished)
     if event.part == "area" and drawn.area is not None and 0 <= event.index < len(drawn.area.vertices_px):
-        return _drawn(session, replace(drawn, area=with_corner(drawn.area, event.index, point)), event.finished)
+        area = with_corner(drawn.area, event.index, point)
+        return _drawn(session, replace(without_proposal(drawn), area=area), event.finished)
     return session
 
 
@@ -251,6 +256,18 @@ def _reconstructed(session: Session, event: Reconstructed) -> Session:
     return replace(session, measured=Measured(event.revision, event.outcome))
 
 
+def _axis_adopted(session: Session) -> Session:
+    """The session with the axis proposed for an area that was drawn without one: it is undone with the area."""
+    drawn, measured = session.objects[session.selected], session.measured
+    if session.preview is not None or drawn.area is None or drawn.axis is not None:
+        return session
+    if measured is None or measured.revision != session.revision or isinstance(measured.outcome, Refused):
+        return session
+    objects = _with_selected(session, with_axis(drawn, measured.outcome.drawing.stroke, proposed=True))
+    revision = session.revision + 1
+    return replace(session, objects=objects, revision=revision, measured=replace(measured, revision=revision))
+
+
 def _told(session: Session) -> Session:
     """The session with a notice of a failure, once a revision and not in the middle of a drag or a polygon."""
     measured = session.measured
@@ -258,6 +275,8 @@ def _told(session: Session) -> Session:
         return session
     if session.preview is not None or session.vertices_px or session.notice is not None:
         return session
+    if session.shown.axis is None:
+        return session  # nothing to propose an axis by, of which the hint tells: the drawing goes on
     match measured.outcome:
         case Refused(reason):
             title, text = "This drawing cannot be measured", sentence(reason)
@@ -275,12 +294,29 @@ def _drawn(session: Session, drawn: ObjectDrawing, finished: bool) -> Session:
 
 def _changed(session: Session, drawn: ObjectDrawing) -> Session:
     """The session with the selected object drawn anew, which can be undone."""
-    selected = session.selected
-    objects = (*session.objects[:selected], drawn, *session.objects[selected + 1 :])
+    objects = _with_selected(session, drawn)
     if objects == session.objects:
         return replace(session, preview=None)
     past = (*session.past, session.objects)[-HISTORY_LENGTH:]
     return replace(session, objects=objects, past=past, future=(), preview=None)
+
+
+def _with_selected(session: Session, drawn: ObjectDrawing) -> Objects:
+    return (*session.objects[: session.selected], drawn, *session.objects[session.selected + 1 :])
+
+
+def _typed(session: Session, event: DiameterTyped) -> Session:
+    """The session with another diameter; its digits, one event each, are undone together."""
+    drawn = session.objects[session.selected]
+    typed = with_knowledge(drawn, event)
+    if typed == drawn:
+        return session
+    if session.past:
+        before = session.past[-1]
+        last = replace(before[session.selected], diameter_mm=drawn.diameter_mm)
+        if (*before[: session.selected], last, *before[session.selected + 1 :]) == session.objects:
+            session = replace(session, objects=before, past=session.past[:-1])
+    return _changed(session, typed)
 
 
 def sentence(text: str) -> str:

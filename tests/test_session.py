@@ -1,6 +1,7 @@
 """Laws of the session: nothing raises, what is undone comes back, and nothing stale or off the frame gets in."""
 
 from dataclasses import replace
+from math import inf
 
 import pytest
 from hypothesis import given, settings
@@ -9,6 +10,8 @@ from hypothesis import strategies as st
 from app.events import (
     Cancelled,
     Cleared,
+    DiameterTyped,
+    DirectionChosen,
     Event,
     HandleMoved,
     KindChosen,
@@ -28,7 +31,7 @@ from app.events import (
 from app.hints import hint
 from app.object_drawing import Pixel
 from app.session import HISTORY_LENGTH, Session, sentence, step
-from rotrecon.drawing import AreaOfInterest, DrawingError, ObjectAxis, check_area
+from rotrecon.drawing import AreaOfInterest, Drawing, DrawingError, ObjectAxis, check_area
 
 SIZE_PX = (640, 480)
 EMPTY = Session(SIZE_PX)
@@ -42,6 +45,8 @@ events: st.SearchStrategy[Event] = st.one_of(
     st.builds(HandleMoved, st.sampled_from(["area", "axis"]), indices, pixels, st.booleans()),
     st.builds(ToolChosen, st.sampled_from(["area", "axis", "nonsense"])),
     st.builds(KindChosen, st.sampled_from([None, "cylinder", "sphere", "nonsense"])),
+    st.builds(DirectionChosen, st.sampled_from(["free", "vertical", "nonsense"])),
+    st.builds(DiameterTyped, coordinates, coordinates),
     st.builds(SectionToggled, indices),
     st.builds(Reconstructed, st.integers(0, 30), st.just(Refused("the axis has no length"))),
     st.sampled_from(
@@ -72,13 +77,16 @@ def test_no_sequence_of_events_raises_or_leaves_the_frame(happened: list[Event])
             assert 0 <= u <= SIZE_PX[0] - 1
             assert 0 <= v <= SIZE_PX[1] - 1
         assert drawn.kind in (None, "cylinder", "sphere")
+        assert drawn.direction in ("free", "vertical")
+        low_m, high_m = drawn.constraints.radius_m or (0.0, inf)
+        assert 0 <= low_m <= high_m
 
 
 @given(sequences, events)
 def test_undo_restores_and_redo_repeats_whatever_changed_the_drawing(happened: list[Event], event: Event) -> None:
     before = after(*happened)
     changed = step(before, event)
-    if changed.objects == before.objects or isinstance(event, Undone | Redone):
+    if changed.objects == before.objects or isinstance(event, Undone | Redone | DiameterTyped):
         return
     undone = step(replace(changed, vertices_px=()), Undone())
     assert undone.objects == before.objects
@@ -209,8 +217,8 @@ def test_a_double_click_is_one_corner() -> None:
 
 def test_a_rectangle_and_a_stroke_make_a_drawing_that_can_be_measured() -> None:
     session = step(EMPTY, AREA)
-    assert session.shown.complete is None
-    assert "axis" in hint(session)
+    assert session.shown.complete == Drawing(AreaOfInterest.rectangle((100.0, 100.0), (200.0, 300.0))), "axis proposed"
+    assert step(EMPTY, AXIS).shown.complete is None
     drawing = step(session, AXIS).shown.complete
     assert drawing is not None
     assert drawing.area == AreaOfInterest.rectangle((100.0, 100.0), (200.0, 300.0))

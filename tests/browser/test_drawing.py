@@ -28,8 +28,14 @@ def draw(operator: Operator, scene: Simulated) -> None:
     expect(operator.page.get_by_test_id("hint")).to_contain_text("shift + drag")
     operator.settle()
     operator.drag(scene.drawing.axis.start_px, scene.drawing.axis.end_px, shift=True)
-    operator.until(lambda: operator.console.session.shown.complete is not None, "area and axis are drawn")
+    operator.until(lambda: is_drawn(operator), "area and axis are drawn")
     shows_its_result(operator)
+
+
+def is_drawn(operator: Operator) -> bool:
+    """Whether there is an axis that has been drawn to its end, and not proposed."""
+    drawn = session_of(operator).objects[0]
+    return drawn.axis is not None and not drawn.proposed
 
 
 def shows_its_result(operator: Operator) -> None:
@@ -188,7 +194,27 @@ def test_by_touch_a_plain_drag_draws_the_axis_when_that_is_chosen(operator: Oper
     operator.until(lambda: session_of(operator).tool == "axis", "the axis is chosen")
     operator.settle()
     operator.drag((150, 80), (150, 160))
-    operator.until(lambda: session_of(operator).objects[0].axis is not None, "the axis is drawn")
+    operator.until(lambda: is_drawn(operator), "the axis is drawn")
+
+
+def test_an_area_alone_is_measured_and_what_is_known_of_the_diameter_is_obeyed(
+    operator: Operator, scene: Simulated
+) -> None:
+    columns, rows = zip(*scene.drawing.area.vertices_px, strict=True)
+    operator.drag((min(columns), min(rows)), (max(columns), max(rows)))
+    operator.until(lambda: session_of(operator).shown.proposed, "an axis is proposed")
+    shows_its_result(operator)
+    diameter_mm = float(operator.value("diameter_mm") or 0)
+    assert diameter_mm == pytest.approx(100, rel=0.1)
+    known_mm = round(diameter_mm, 1)
+    operator.page.get_by_text("What is known").click()
+    fields = operator.page.get_by_label("Diameter from / to, mm").locator("xpath=../../..").get_by_role("textbox")
+    for number in (0, 1):
+        fields.nth(number).fill(str(known_mm))
+        operator.until(lambda number=number: session_of(operator).shown.diameter_mm[number] == known_mm, "it is known")
+    shows_its_result(operator)
+    assert float(operator.value("diameter_mm") or 0) == pytest.approx(known_mm, abs=1e-6)
+    expect(operator.page.get_by_text(f"What is known: {known_mm:g} mm")).to_be_visible()
 
 
 def test_buttons_do_what_keys_do(drawn: Operator) -> None:
