@@ -14,11 +14,16 @@ GIVEN = [
 PROPOSED_AXIS = ["planes", "foreground", "stroke_ends", "mirror", "hollow", "axis_proposal", "axis_direction"]
 SEGMENTED = ["segmentation", "circles", "axis", "tools", "reconstruction", "section_cuts"]
 BY_SECTIONS = ["radii", "section_fit", "by_sections"]
-BY_RAYS = [
-    "surfaces", "patch", "correlation", "fitting", "ray_fit", "starts", "edge_lines", "edge_steps", "edges", "limbs",
-    "guard", "hypotheses", "robust", "extent", "turned", "looks", "height_radii", "profile", "parts", "smoothness",
-    "turned_start", "turned_fit", "intervals", "recognition", "soundness", "judgement", "section_radii", "by_rays",
+FITTED = [
+    "surfaces", "patch", "correlation", "fitting", "ray_fit", "coarse_fit", "starts", "edge_lines", "edge_steps",
+    "edges", "limbs", "guard", "hypotheses", "robust",
 ]  # fmt: skip
+TURNED = [
+    "extent", "lines", "turned", "looks", "height_radii", "profile", "parts", "smoothness", "turned_start",
+    "turned_fit",
+]  # fmt: skip
+JUDGED = ["intervals", "recognition", "soundness", "judgement", "section_radii", "by_rays"]
+BY_RAYS = [*FITTED, *TURNED, *JUDGED]
 SHOWN = ["answer", "overlay", "mesh"]
 ORDER = [*GIVEN, *PROPOSED_AXIS, *SEGMENTED, *BY_SECTIONS, *BY_RAYS, "reconstruct", *SHOWN]
 """The flow of data; a stage may import only what stands before it."""
