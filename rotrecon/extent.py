@@ -8,6 +8,7 @@ import numpy as np
 from rotrecon.arrays import Floats
 from rotrecon.patch import Patch
 from rotrecon.surfaces import Lateral
+from rotrecon.turned import radius_at
 
 INNER = 0.8
 """Share of the radius beside the axis within which depth is asked: farther out matching smears it."""
@@ -80,7 +81,7 @@ def extent_of(surface: Lateral, patch: Patch, sigma: float, correlation_px: floa
     """
     trace = surface.trace(patch.rays)
     x, _, height = surface.turn @ (patch.rays * trace.depth_m - surface.center_m[:, None])
-    radius = surface.radius_m + surface.slope * height
+    radius = radius_at(surface, height)
     seen = np.flatnonzero(trace.hit & (trace.depth_m > 0) & (np.abs(x) < INNER * radius))
     height = height[seen]
     off = np.abs(patch.noise.steps(patch.depth_m[seen]) - patch.noise.steps(trace.depth_m[seen])) / sigma
@@ -101,7 +102,7 @@ def _end(
 ) -> tuple[float, tuple[float, float] | None]:
     """Height of the end from a start one way (1 up, -1 down), and its interval, None if it is open."""
     start_m, way = start
-    width_px = 2 * INNER * float(_radius_at(surface, start_m)) * patch.focal_px / _depth_at(surface, start_m)
+    width_px = 2 * INNER * _radius_of(surface, start_m) * patch.focal_px / _depth_at(surface, start_m)
     walk = _walk(outward_m, off, AGREES, DROP_PX * width_px)
     pitch_m = _pitch(surface, patch, start_m + way * walk.end_m)
     border_m = _border(surface, patch, start_m, way, float(outward_m[-1]) if len(outward_m) else 0.0, pitch_m)
@@ -139,7 +140,7 @@ def _border(surface: Lateral, patch: Patch, start_m: float, way: int, farthest_m
     across, toward, axis = surface.turn
     round_about = np.sin(COVER_ANGLES_RAD)[:, None] * across - surface.side * np.cos(COVER_ANGLES_RAD)[:, None] * toward
     on_axis = surface.center_m + height[:, None] * axis
-    points = on_axis[:, None] + np.maximum(_radius_at(surface, height), 0.0)[:, None, None] * round_about
+    points = on_axis[:, None] + np.maximum(radius_at(surface, height), 0.0)[:, None, None] * round_about
     place_px = np.clip(patch.camera.project(points.reshape(-1, 3)), -FARTHEST_PX, FARTHEST_PX)
     pixel = patch.pixel_of(place_px).reshape(len(outward_m), -1)
     covered = ((pixel >= 0) & patch.area[pixel]).mean(axis=1) >= 0.5
@@ -148,14 +149,14 @@ def _border(surface: Lateral, patch: Patch, start_m: float, way: int, farthest_m
 
 def _pitch(surface: Lateral, patch: Patch, height_m: float) -> float:
     """Height along the axis that a pixel covers, on the visible side's middle."""
-    height = height_m + _radius_at(surface, height_m) * np.array([-0.01, 0.01])
-    ridge = -surface.side * np.maximum(_radius_at(surface, height), 0.0)[:, None] * surface.turn[1]
+    height = height_m + _radius_of(surface, height_m) * np.array([-0.01, 0.01])
+    ridge = -surface.side * np.maximum(radius_at(surface, height), 0.0)[:, None] * surface.turn[1]
     place_px = patch.camera.project(surface.center_m + height[:, None] * surface.direction + ridge)
     return float(np.ptp(height) / np.linalg.norm(place_px[1] - place_px[0]))
 
 
-def _radius_at(surface: Lateral, height_m: Floats | float) -> Floats:
-    return surface.radius_m + surface.slope * np.asarray(height_m)
+def _radius_of(surface: Lateral, height_m: float) -> float:
+    return float(radius_at(surface, np.array([height_m]))[0])
 
 
 def _depth_at(surface: Lateral, height_m: float) -> float:

@@ -6,7 +6,8 @@ import numpy as np
 
 from rotrecon.arrays import Bools, Floats, freeze
 from rotrecon.correlation import Likeness
-from rotrecon.height_radii import grazes_at, height_radii, looks_at
+from rotrecon.height_radii import height_radii
+from rotrecon.looks import grazes_at, looks_at
 from rotrecon.patch import Patch
 from rotrecon.ray_fit import RayFit
 from rotrecon.surfaces import Lateral

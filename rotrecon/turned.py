@@ -5,21 +5,22 @@ from dataclasses import dataclass, replace
 import numpy as np
 
 from rotrecon.arrays import Bools, Floats, Indices
+from rotrecon.lines import Lines
 from rotrecon.surfaces import GRAZING_PX, Lateral, Rays, Tangency, Trace, turn_of
 
 TO_POWERS = np.array([[1, 4, 1, 0], [-3, 0, 3, 0], [3, -6, 3, 0], [-1, 3, -3, 1]]) / 6.0
 """Coefficients of 1, u, u^2, u^3 on an interval, from those of the four B-splines that reach it (de Boor 1978)."""
 AXIS_PARAMETERS = 4
 """Come before the coefficients of the curve."""
-MEETINGS = 6
+MEETINGS = 8
 """Tangent cones of the profile that a ray is met with in turn, at most: as with Newton's method each doubles the digits
 wherever the profile is smooth."""
 MET_M = 1e-5
 """Heights that change by less from one cone to the next are at most a nanometre off after it, by the same law."""
 SMALLEST_M = 1e-5
 """Least radius: a profile that closes has an end there, and no surface beyond."""
-FLANK, LEAST_DISC = 1e-9, 1e-12
-"""Least magnitude of the leading coefficient, and of the discriminant (m^2), of a ray's quadratic."""
+LEAST_DISC = 1e-12
+"""Least discriminant (m^2) of a ray's quadratic that is told from zero."""
 
 
 @dataclass(frozen=True, eq=False, kw_only=True)
@@ -83,42 +84,72 @@ class Turned(Lateral):
         At the meeting point the surface and its tangent cone agree in place and in normal, and so in all derivatives.
         """
         lines = Lines.of(self, rays)
-        height = self._first_guess(lines)
-        radius, slope = self.curve(height)
-        depth, root, hit = self.meet(lines, height, radius, slope)
-        for _ in range(MEETINGS):
-            met = lines.height(depth)
-            moved_m = np.abs(met - height).max(initial=0.0)
-            height = met
-            radius, slope = self.curve(height)
-            if moved_m < MET_M:
+        depth, root, hit = self._settled(lines, self._first_guess(lines))
+        for end_m in (self.low_m, self.high_m):
+            # past a narrow part a ray may meet a wider one
+            missed = np.flatnonzero(~hit).astype(np.int32)
+            if len(missed) == 0:
                 break
-            depth, root, hit = self.meet(lines, height, radius, slope)
-        columns = self._by_parameters(lines, depth, height, radius, slope)
+            again = lines.chosen(missed)
+            others = self._settled(again, np.full(len(missed), end_m))
+            met = again.height(others[0])
+            better = others[2] & (met >= self.low_m) & (met <= self.high_m)
+            for values, other in zip((depth, root, hit), others, strict=True):
+                values[missed[better]] = other[better]
+        self._continue(lines, depth, root, hit)
+        columns = self._by_parameters(lines, depth)
         columns *= -self.side / root
         return Trace(depth, hit, columns)
 
-    def _first_guess(self, lines: "Lines") -> Floats:
+    def _continue(self, lines: Lines, depth: Floats, root: Floats, hit: Bools) -> None:
+        """Depths and roots of rays that miss and were led far away, as if they missed the nearest cylinder."""
+        height = lines.height(depth)
+        reach_m = self.size_m
+        lost = np.flatnonzero(~hit & ~((height > self.low_m - reach_m) & (height < self.high_m + reach_m)))
+        if len(lost) == 0:
+            return
+        passing = lines.chosen(lost.astype(np.int32))
+        nearest = np.clip(passing.height(-passing.mixed / passing.square), self.low_m, self.high_m)
+        radius = self.curve(nearest)[0]
+        depth[lost], root[lost], _ = self.meet(passing, nearest, radius, np.zeros_like(radius))
+
+    def _settled(self, lines: Lines, height: Floats) -> tuple[Floats, Floats, Bools]:
+        """Depth, root of the discriminant and hits of rays, from cone to cone from a first guess of the heights."""
+        depth, root, hit = self.meet(lines, height, *self.curve(height))
+        before = np.zeros_like(height)
+        for _ in range(MEETINGS):
+            step = lines.height(depth) - height
+            # near a limb the heights may swing about the right one
+            step = np.where(step * before < 0, step / 2, step)
+            height, before = height + step, step
+            depth, root, hit = self.meet(lines, height, *self.curve(height))
+            if np.abs(step)[hit].max(initial=0.0) < MET_M:
+                break
+        return depth, root, hit
+
+    def _first_guess(self, lines: Lines) -> Floats:
         """Heights (N,) at which rays meet the cone of the straight line."""
         at_zero = np.zeros_like(lines.square)
         depth, _, _ = self.meet(lines, at_zero, at_zero + self.radius_m, at_zero + self.slope)
         return np.clip(lines.height(depth), self.low_m, self.high_m)
 
-    def meet(self, lines: "Lines", height: Floats, radius: Floats, slope: Floats) -> tuple[Floats, Floats, Bools]:
+    def meet(self, lines: Lines, height: Floats, radius: Floats, slope: Floats) -> tuple[Floats, Floats, Bools]:
         """Depth, root of the discriminant, and hits of rays with cones of these radii and slopes at these heights.
 
         Rays that miss are continued as those of `Lateral`.
         """
         a, b, c = lines.quadratic(height, radius, slope)
         disc = b * b - a * c
-        grazing = np.maximum(2 * GRAZING_PX / self.focal_px * np.abs(radius * b), LEAST_DISC)
+        nearest = radius + slope * (lines.height(-b / a) - height)
+        grazing = np.maximum(2 * GRAZING_PX / self.focal_px * np.abs(nearest * b), LEAST_DISC)
         root = np.sqrt(np.maximum(disc, grazing))
         reach = root + np.minimum(disc - grazing, 0.0) / (2 * np.sqrt(grazing))
         return (-b + self.side * reach) / a, root, disc > 0
 
-    def _by_parameters(self, lines: "Lines", depth: Floats, height: Floats, radius: Floats, slope: Floats) -> Floats:
+    def _by_parameters(self, lines: Lines, depth: Floats) -> Floats:
         """(4 + K, N) derivatives of half of x^2 + y^2 - r(h)^2 by the parameters."""
-        x, y = lines.aside(depth)
+        (x, y), height = lines.aside(depth), lines.height(depth)
+        radius, slope = self.curve(height)
         lever = height + slope * radius
         columns = np.empty((AXIS_PARAMETERS + len(self.coefficients_m), len(height)))
         columns[:AXIS_PARAMETERS] = -x, -y, -x * lever, -y * lever
@@ -129,17 +160,15 @@ class Turned(Lateral):
         """How far rays pass outside it."""
         lines, depth = self._nearest(rays)
         x, y = lines.aside(depth)
-        height = lines.height(depth)
-        radius, slope = self.curve(height)
-        gap = (x**2 + y**2 - radius**2) / (2 * radius)
-        return Tangency(gap, depth, self._by_parameters(lines, depth, height, radius, slope) / radius)
+        radius = self.curve(lines.height(depth))[0]
+        return Tangency((x**2 + y**2 - radius**2) / (2 * radius), depth, self._by_parameters(lines, depth) / radius)
 
     def off_middle(self, rays: Rays) -> Floats:
         """How far beside the axis rays (3, N) pass, over the radius there: 1 at the outline."""
         lines, depth = self._nearest(rays)
         return np.hypot(*lines.aside(depth)) / self.curve(lines.height(depth))[0]
 
-    def _nearest(self, rays: Rays) -> tuple["Lines", Floats]:
+    def _nearest(self, rays: Rays) -> tuple[Lines, Floats]:
         """The depths (N,) at which rays are nearest to the surface."""
         lines = Lines.of(self, rays)
         height = self._first_guess(lines)
@@ -172,50 +201,19 @@ class Turned(Lateral):
         )
 
 
-@dataclass(frozen=True, eq=False)
-class Lines:
-    """Rays in the surface's own coordinates: origin + depth * turned."""
-
-    origin: Floats
-    """(3,)"""
-    turned: Floats
-    """(3, N)"""
-    square: Floats
-    """(N,) of the turned rays' distance from the axis per depth."""
-    mixed: Floats
-    """(N,)"""
-
-    @staticmethod
-    def of(surface: Lateral, rays: Rays) -> "Lines":
-        """Rays (3, N) in the coordinates of a surface."""
-        turned, origin = surface.turn @ rays, -surface.turn @ surface.center_m
-        square = turned[0] * turned[0] + turned[1] * turned[1]
-        return Lines(origin, turned, square, origin[0] * turned[0] + origin[1] * turned[1])
-
-    def height(self, depth: Floats) -> Floats:
-        """Heights (N,) along the axis at depths (N,)."""
-        return self.origin[2] + depth * self.turned[2]
-
-    def aside(self, depth: Floats) -> tuple[Floats, Floats]:
-        """Offsets (N,) from the axis, across and toward the camera, at depths (N,)."""
-        return self.origin[0] + depth * self.turned[0], self.origin[1] + depth * self.turned[1]
-
-    def quadratic(self, height: Floats, radius: Floats, slope: Floats) -> tuple[Floats, Floats, Floats]:
-        """a, b, c of a z^2 + 2 b z + c for every ray with its own cone, of a radius and a slope at a height."""
-        at_origin = radius + slope * (self.origin[2] - height)
-        growth = slope * self.turned[2]
-        a = self.square - growth * growth
-        a = np.where(np.abs(a) < FLANK, FLANK, a)
-        return a, self.mixed - at_origin * growth, self.origin[0] ** 2 + self.origin[1] ** 2 - at_origin * at_origin
+def radius_at(surface: Lateral, height_m: Floats) -> Floats:
+    """Radius (N,) at heights (N,) of a cylinder, a cone or a turned surface."""
+    return surface.curve(height_m)[0] if isinstance(surface, Turned) else surface.radius_m + surface.slope * height_m
 
 
 def _line(coefficients_m: Floats, low_m: float, high_m: float) -> tuple[float, float]:
     """Radius at height 0 and slope of the straight line through a curve of these coefficients."""
     count = len(coefficients_m)
     # a B-spline's coefficients belong to the middles of the splines, a pitch before the first knot on
-    height = low_m + (np.arange(count) - 1.0) * (high_m - low_m) / (count - 3)
-    slope, radius = np.polyfit(height, coefficients_m, 1)
-    return float(radius), float(slope)
+    pitch_m = (high_m - low_m) / (count - 3)
+    offset = (np.arange(count) - (count - 1) / 2) * pitch_m
+    slope = float(offset @ coefficients_m / (offset @ offset))
+    return float(coefficients_m.mean()) - slope * (low_m + high_m) / 2, slope
 
 
 def turned_from(surface: Lateral, height_m: Floats, radius_m: Floats, knots: int) -> Turned:
@@ -234,6 +232,8 @@ def turned_from(surface: Lateral, height_m: Floats, radius_m: Floats, knots: int
         high_m=high,
     )
     at = np.linspace(low, high, 4 * knots)
-    coefficients = np.linalg.pinv(empty.basis(at).T) @ np.interp(at, height_m, radius_m)
+    basis = empty.basis(at)
+    solved = np.linalg.solve(basis @ basis.T, basis @ np.interp(at, height_m, radius_m))
+    coefficients = np.asarray(solved, dtype=np.float64)
     radius, slope = _line(coefficients, low, high)
     return replace(empty, coefficients_m=coefficients, radius_m=radius, slope=slope)

@@ -8,7 +8,8 @@ from rotrecon.arrays import Bools, Floats, Indices, freeze
 from rotrecon.correlation import Likeness, likeness_of
 from rotrecon.extent import Extent
 from rotrecon.fitting import Measurement, Outline, refine, tukey
-from rotrecon.height_radii import HeightRadii, Looks, grazes_at, height_radii, looks_at
+from rotrecon.height_radii import HeightRadii, height_radii
+from rotrecon.looks import Looks, grazes_at, looks_at
 from rotrecon.patch import Patch
 from rotrecon.ray_fit import INLIER_SIGMA, OVERSAMPLED, WHOLE, RayFit, Sight, depths_of, spread
 from rotrecon.smoothness import UNBENT, Radii, Smoothness, next_scale
@@ -23,10 +24,10 @@ HEIGHTS = 60
 """Whose radii are free while the axis is looked for: an edge between two of them costs no more than itself."""
 FEWEST_HEIGHTS = 8
 """With fewer known there is no profile."""
-SCOUTS, LEAST_PIXELS = 3000, 4000
+SCOUTS, LEAST_PIXELS = 2500, 4000
 """Depths for the search, and at least for the curve."""
-ROUNDS = 6
-"""Of Gauss and Newton from the start to the axis, the last over all depths."""
+ROUNDS = 3
+"""Of Gauss and Newton between the first and the last, which is over all depths."""
 MATCHED = 0.25
 """Errors less alike than this are not those of matching windows."""
 WINDOW_REACH = 1.0
@@ -87,12 +88,11 @@ def fit_turned(patch: Patch, edge: Ridge, start: RayFit | None = None, extent: E
         raise TypeError("a profile needs an axis; start from a cylinder or a cone")
     free = np.ones(AXIS_PARAMETERS, dtype=np.bool_) if start is None else start.free[:AXIS_PARAMETERS]
     task = _Task(patch, free, () if start is None else start.outlines)
-    surface = turned_start(patch, edge, lateral, ~free[2:], extent, KNOTS)
+    surface = turned_start(patch, edge, lateral, ~free[2:], extent, task.outlines, KNOTS)
     axis = None if surface is None else _round(surface, task, WHOLE, UNALIKE, SCOUTS)
-    for number in range(1, ROUNDS):
+    for most in (*[SCOUTS] * ROUNDS, None):
         if axis is None:
             return None
-        most = SCOUTS if number < ROUNDS - 1 else None
         axis = _round(axis.surface, task, _guard(axis, patch), axis.likeness, most)
     return None if axis is None else _smoothed(axis, task)
 
@@ -124,8 +124,8 @@ def _round(surface: Turned, task: _Task, guard: float, likeness: Likeness, most:
     through = turned_from(surface, heights[known], radius, KNOTS)
     own = np.maximum(found.sums.own[known], 1e-300)
     radii = Radii(heights[known], radius, 1.0 / np.sqrt(own), found.sums.mixed[:, known] / own)
-    alike = _likeness(looks, found, task.patch)
-    return _Axis(through.stepped(step), radii, guard, looks.pixels, found.sigma, alike, covariance)
+    likeness = _likeness(looks, found, task.patch)
+    return _Axis(through.stepped(step), radii, guard, looks.pixels, found.sigma, likeness, covariance)
 
 
 def _likeness(looks: Looks, found: HeightRadii, patch: Patch) -> Likeness:

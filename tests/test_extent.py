@@ -8,6 +8,7 @@ from rotrecon.fitting import robust_scale
 from rotrecon.patch import Patch
 from rotrecon.ray_fit import Sight, depths_of, near
 from rotrecon.surfaces import Lateral
+from rotrecon.turned import turned_from
 from tests.bodies import BOTTLE, CONE, CYLINDER, Body, body_at, depth_of, drawing_round, noisy_frame, patch_seen
 
 POSES = range(12)
@@ -113,3 +114,17 @@ def test_a_surface_that_is_not_there_has_no_extent():
     patch = seen(body, 4, 0.02)
     nearer = replace(body, center_m=np.array([0.0, 0.0, 0.5]))
     assert extent_of(nearer.lateral(), patch, sigma_of(body.lateral(), patch), 0.0) is None
+
+
+@pytest.mark.parametrize("seed", POSES)
+def test_a_turned_surface_is_followed_through_all_of_an_object(seed):
+    body = body_at(BOTTLE, seed, most_tilt=0.4)
+    height = np.linspace(body.low_m, body.high_m, 80)
+    surface = turned_from(body.lateral(), height, body.radius_at(height), 24)
+    patch = seen(body, seed, 0.05)
+    drawn = patch.drawn & (body.lateral().heights((patch.rays * patch.depth_m).T) < -0.02)
+    found = extent(surface, replace(patch, drawn=drawn))
+    assert found.low_m == pytest.approx(body.low_m, abs=0.003)
+    assert found.high_m == pytest.approx(body.high_m, abs=0.003)
+    assert not found.low_open
+    assert not found.high_open
