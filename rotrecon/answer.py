@@ -6,7 +6,7 @@ import numpy as np
 
 from rotrecon.arrays import Floats
 from rotrecon.circles import SectionState
-from rotrecon.outcome import Evidence, Fit, FitFailure, Intervals
+from rotrecon.outcome import Evidence, Fit, FitFailure, Intervals, PartOf
 from rotrecon.primitives import Frustum, Primitive
 from rotrecon.reconstruction import Reconstruction
 from rotrecon.tools import NoTool, ToolProposal
@@ -15,7 +15,7 @@ NOTHING: dict[str, Any] = dict.fromkeys(
     [
         "margin", "diameter_mm", "interval_mm", "length_mm", "length_interval_mm", "ends", "center_m",
         "center_interval_mm", "axis", "axis_interval_deg", "half_angle_deg", "half_angle_interval_deg", "rms_mm",
-        "arc_deg", "inlier_share", "sigma_over_radius", "noise", "tool", "contact",
+        "arc_deg", "parts", "inlier_share", "sigma_over_radius", "noise", "tool", "contact",
     ]
 )  # fmt: skip
 """The fields that are null where they are not known."""
@@ -90,6 +90,7 @@ def _evidence(evidence: Evidence | None) -> dict[str, Any]:
     return {
         "margin": round(evidence.margin, 4),
         "ends": None if ends is None else {"start": _end(ends[0]), "end": _end(ends[1])},
+        "parts": [_part(part) for part in evidence.parts],
         "inlier_share": round(evidence.inlier_share, 4),
         "sigma_over_radius": round(evidence.sigma_over_radius, 6),
         "noise": {
@@ -98,6 +99,19 @@ def _evidence(evidence: Evidence | None) -> dict[str, Any]:
             "correlation_px": round(evidence.correlation_px, 2),
             "stated": evidence.noise_stated,
         },
+    }
+
+
+def _part(part: PartOf) -> dict[str, Any]:
+    """One of the pieces along the axis, positions from `center_m`."""
+    angle = _degrees(part.half_angle_rad) if part.kind == "cone" else None
+    return {
+        "kind": part.kind,
+        "from_mm": _mm(part.ends_m[0]),
+        "to_mm": _mm(part.ends_m[1]),
+        "diameter_mm": _mm(part.diameter_m),
+        "interval_mm": [_mm(end) for end in part.diameter_interval_m],
+        "half_angle_deg": angle,
     }
 
 

@@ -12,10 +12,11 @@ from rotrecon.frame import StereoNoise
 from rotrecon.hypotheses import Held, Scene, scene_of
 from rotrecon.intervals import radius_sigma
 from rotrecon.judgement import doubts_of, failure_of, too_little
-from rotrecon.outcome import Evidence, FailureReason, Fit, FitFailure, Range
+from rotrecon.outcome import Evidence, FailureReason, Fit, FitFailure, PartOf, Range
+from rotrecon.parts import Part
 from rotrecon.patch import Patch, patch_of
 from rotrecon.primitives import Primitive
-from rotrecon.recognition import candidates_of, chosen_of, intervals_of, is_possible, solid_of
+from rotrecon.recognition import candidates_of, chosen_of, intervals_of, is_possible, margin_of, solid_of
 from rotrecon.reconstruction import Cut, Reconstruction
 from rotrecon.robust import Ranked, rank
 from rotrecon.section_radii import SectionRadii, section_radii
@@ -104,10 +105,10 @@ def _find(scene: Scene, held: Held, segmented: Reconstruction) -> _Found | FitFa
 
 def _sections(found: _Found, patch: Patch, segmented: Reconstruction) -> SectionRadii:
     """As many sections as the drawing has, across the axis, through the depths that agree."""
-    pixels = patch.frame_pixels(np.flatnonzero(found.soundness.agreeing).astype(np.int32))
-    count = len(segmented.segments.pixel)
+    count, cloud_m = len(segmented.segments.pixel), segmented.frame.points_m
     assert found.chosen.fit is not None
-    return section_radii(found.chosen.fit, found.axis, pixels, segmented.frame.points_m, count, segmented.settings)
+    agreeing = found.soundness.agreeing
+    return section_radii(found.chosen.fit, found.axis, patch, agreeing, cloud_m, count, segmented.settings)
 
 
 def _without(patch: Patch, radii: SectionRadii, excluded: list[int]) -> Patch:
@@ -129,7 +130,7 @@ def _reconstruction(segmented: Reconstruction, found: _Found, radii: SectionRadi
     length_m = None if found.extent is None else found.extent.length_interval_m
     intervals = intervals_of(chosen, middle_m, length_m)
     candidates = candidates_of(found.ranked, chosen, middle_m, settings)
-    margin = candidates[0].score - max((other.score for other in candidates[1:]), default=0.0)
+    margin = middle_m - max((other.score for other in candidates[1:]), default=0.0)
     doubts = doubts_of(chosen, found.soundness, intervals, radii.circles.state, scene, settings)
     rivals = [one for one in found.ranked if one is not chosen and is_possible(one, chosen, settings)]
     low_m, high_m = intervals.diameter_m
@@ -170,7 +171,7 @@ def _reading(found: _Found, one: Ranked, solid: Primitive, middle_m: float) -> R
 
 
 def _evidence(
-    segmented: Reconstruction, found: _Found, scene: Scene, radii: SectionRadii, certain: bool, margin: float
+    segmented: Reconstruction, found: _Found, scene: Scene, radii: SectionRadii, certain: bool, middle_m: float
 ) -> Evidence:
     fit, surface, noise = found.chosen.fit, found.chosen.surface, scene.patch.noise
     assert fit is not None
@@ -180,7 +181,7 @@ def _evidence(
     noise_m = float(noise.sigma_m(depth_m))
     return Evidence(
         certain=certain,
-        margin=margin,
+        margin=margin_of(found.ranked, found.chosen),
         inlier_share=found.soundness.inlier_share,
         sigma_over_radius=radius_sigma(fit) / surface.size_m,
         noise_m=noise_m,
@@ -188,9 +189,18 @@ def _evidence(
         correlation_px=max(noise.correlation_px, fit.likeness.length_px if fit.likeness.alike > 0 else 0.0),
         noise_stated=noise.stated,
         open_ends=None if found.extent is None else (found.extent.low_open, found.extent.high_open),
+        parts=tuple(_told(part, middle_m) for part in radii.parts),
         radius_low_m=radii.low_m,
         radius_high_m=radii.high_m,
     )
+
+
+def _told(part: Part, middle_m: float) -> PartOf:
+    """A part as it is told, from the solid's middle."""
+    low, high = part.radius_interval_m
+    half_angle_rad = float(np.arctan(part.slope)) if part.kind == "cone" else 0.0
+    ends_m = (part.low_m - middle_m, part.high_m - middle_m)
+    return PartOf(part.kind, ends_m, 2 * part.radius_m, (2 * low, 2 * high), half_angle_rad)
 
 
 def _rms(distance_m: Floats) -> float:

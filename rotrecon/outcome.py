@@ -2,6 +2,7 @@
 
 from dataclasses import dataclass
 from enum import StrEnum
+from typing import Literal
 
 from rotrecon.arrays import Bytes, Floats, freeze
 from rotrecon.primitives import Kind, Primitive
@@ -68,6 +69,19 @@ class Candidate:
     """Whether the object may be of this kind; None by the paper's method, which cannot tell."""
 
 
+@dataclass(frozen=True)
+class PartOf:
+    """One of the consecutive pieces that an object falls into along its axis."""
+
+    kind: Literal["cylinder", "cone", "sphere"]
+    ends_m: Range
+    """Positions along the axis, from the solid's middle."""
+    diameter_m: float
+    """Of a sphere its own, of others that at the middle of their length."""
+    diameter_interval_m: Range
+    half_angle_rad: float = 0.0
+
+
 @dataclass(frozen=True, eq=False)
 class Evidence:
     """What a fit by the robust method rests on."""
@@ -90,6 +104,8 @@ class Evidence:
     """By the scene; else estimated."""
     open_ends: tuple[bool, bool] | None
     """Whether it goes on beyond the area at its start and its end along the stroke; None for a sphere."""
+    parts: tuple[PartOf, ...]
+    """More than one where the radius along the axis is not that of one solid; none of a sphere."""
     radius_low_m: Floats
     """(S,) lower limits of the radii of the sections, NaN where there is none."""
     radius_high_m: Floats

@@ -22,6 +22,8 @@ from rotrecon.surfaces import Surface
 FINE_ITERATIONS, FINE_ROUNDS = 8, 3
 OVERSAMPLED, LEAST_PIXELS = 20.0, 2500
 """Pixels compared for each independent one, and at least: more would only repeat them."""
+HASTY_PIXELS = 20000
+"""Enough for a first round; the next takes all."""
 REPEATING = 0.25
 """Likeness of errors above which neighbouring pixels repeat each other."""
 TAMED_PX = 0.3
@@ -88,20 +90,22 @@ def fine(
     """Rounds over the pixels within the outline and close to it; None when there are too few to hold the parameters."""
     share, alike, size_m, judge = 1.0, 0.0, surface.size_m, surface
     pixels: Indices = np.empty(0, dtype=np.int32)
-    for _ in range(FINE_ROUNDS):
+    for round_ in range(FINE_ROUNDS):
         # a guard that followed the surface would let it shrink away from what does not fit
         pixels = near(judge if sight.guard < 1 else surface, patch, patch.drawn & np.isfinite(patch.depth_m), sight)
         if sight.window_px == 1 and alike > REPEATING:
             pixels = spread(pixels, max(int(OVERSAMPLED * share * len(pixels)), LEAST_PIXELS))
         if len(pixels) < 2 * len(units):
             return None
+        hasty = round_ == 0 and sight.window_px == 1 and len(pixels) > HASTY_PIXELS
+        pixels = spread(pixels, HASTY_PIXELS) if hasty else pixels
         depths = _measured(patch, pixels, surface, sight)
         sigma, likeness = _noise_of(patch, pixels, depths.predict(surface).residual)
         share, alike = likeness.independent_share, likeness.alike
         measurements: list[Measurement] = [depths, *(outline for outline, _ in outlines)]
         weighting = [(sigma, share), *((1.0, outline_share) for _, outline_share in outlines)]
         surface = refine(surface, measurements, weighting, tukey, free, units, FINE_ITERATIONS).surface
-        if abs(surface.size_m - size_m) < SETTLED_SIZE * size_m:
+        if abs(surface.size_m - size_m) < SETTLED_SIZE * size_m and not hasty:
             break
         size_m = surface.size_m
     return _finished(surface, patch, pixels, free, sight, outlines)

@@ -4,18 +4,21 @@ from dataclasses import dataclass, replace
 
 import numpy as np
 
-from rotrecon.arrays import Cloud, Floats, Indices, freeze
+from rotrecon.arrays import Bools, Cloud, Floats, Indices, freeze
 from rotrecon.axis import Axis, SpaceSections, cut_in_space
 from rotrecon.circles import SectionCircles, SectionState, circumcircles
 from rotrecon.fitting import TO_SIGMA
+from rotrecon.parts import Part, parts_of
+from rotrecon.patch import Patch
+from rotrecon.profile import profile_of
 from rotrecon.ray_fit import RayFit
 from rotrecon.settings import Settings
 from rotrecon.surfaces import Ball, Surface
 
 INNER = 0.85
 """Share of the radius within which depths say how far out a section's surface is; farther out they are flattened."""
-ODD_SIGMA = 5.0
-"""Standard deviations of a section's radius beyond which it is odd."""
+ODD_WIDTHS = 1.3
+"""Widths of its interval by which the radius of an odd section is off."""
 ODD_RADIUS = 0.1
 """Share of the radius within which it is never odd."""
 MEDIAN_LOSS = 1.2533
@@ -30,6 +33,8 @@ class SectionRadii:
     circles: SectionCircles
     heights_m: Floats
     """(S,) along the axis, from its point."""
+    parts: tuple[Part, ...]
+    """Consecutive cylinders, cones and spheres that the radii fall into; none of a ball."""
     low_m: Floats
     """(S,) 95 % limits of the radius; NaN where there is none."""
     high_m: Floats
@@ -45,10 +50,11 @@ class SectionRadii:
 
 
 def section_radii(
-    fit: RayFit, axis: Axis, pixels: Indices, cloud_m: Cloud, count: int, settings: Settings
+    fit: RayFit, axis: Axis, patch: Patch, agreeing: Bools, cloud_m: Cloud, count: int, settings: Settings
 ) -> SectionRadii:
-    """`count` sections through the pixels (n,) of a cloud (H, W, 3) that agree with a fit."""
+    """`count` sections through the pixels of a patch (N,) that agree with a fit; `cloud_m` (H, W, 3) is the frame's."""
     surface = fit.surface
+    pixels = patch.frame_pixels(np.flatnonzero(agreeing).astype(np.int32))
     height = axis.along(cloud_m.reshape(-1, 3)[pixels].astype(np.float64))
     low, high = (float(end) for end in (height.min(), height.max()))
     margin = max((high - low) / (2 * count), 1e-6)
@@ -56,16 +62,16 @@ def section_radii(
     heights: Floats = low - margin + (np.arange(count, dtype=np.float64) + 0.5) * sections.pitch_m
     shape_m = _shape(surface, heights)
     circles = circumcircles(*sections.base_points(), settings)
-    radius, sigma = _radii(sections, shape_m, fit, settings.minimum_section_pixels)
+    radius, low_m, high_m, parts = _radii(sections, heights, shape_m, fit, patch, settings)
     state = circles.state.copy()
     state[state == SectionState.COLLINEAR] = SectionState.USED
     state[(state == SectionState.USED) & ~np.isfinite(radius)] = SectionState.TOO_FEW_PIXELS
     with np.errstate(invalid="ignore"):
-        odd = np.abs(radius - shape_m) > np.maximum(ODD_SIGMA * sigma, ODD_RADIUS * shape_m)
+        odd = np.abs(radius - shape_m) > np.maximum(ODD_WIDTHS * (high_m - low_m), ODD_RADIUS * shape_m)
     state[(state == SectionState.USED) & odd] = SectionState.ODD_RADIUS
     radius[state == SectionState.EMPTY] = np.nan
     circles = replace(circles, state=state, radius_m=radius, center_m=axis.point_m + heights[:, None] * axis.direction)
-    return SectionRadii(sections, circles, heights, radius - 1.96 * sigma, radius + 1.96 * sigma)
+    return SectionRadii(sections, circles, heights, parts, low_m, high_m)
 
 
 def _shape(surface: Surface, heights_m: Floats) -> Floats:
@@ -75,7 +81,18 @@ def _shape(surface: Surface, heights_m: Floats) -> Floats:
     return surface.radius_m + surface.slope * heights_m
 
 
-def _radii(sections: SpaceSections, shape_m: Floats, fit: RayFit, fewest: int) -> tuple[Floats, Floats]:
+def _radii(
+    sections: SpaceSections, heights: Floats, shape_m: Floats, fit: RayFit, patch: Patch, settings: Settings
+) -> tuple[Floats, Floats, Floats, tuple[Part, ...]]:
+    """Radii (S,) with their limits, and the parts they fall into."""
+    if isinstance(fit.surface, Ball):
+        radius, sigma = _distances(sections, shape_m, fit, settings.minimum_section_pixels)
+        return radius, radius - 1.96 * sigma, radius + 1.96 * sigma, ()
+    profile = profile_of(fit, patch, heights)
+    return profile.radius_m.copy(), profile.low_m, profile.high_m, parts_of(profile)
+
+
+def _distances(sections: SpaceSections, shape_m: Floats, fit: RayFit, fewest: int) -> tuple[Floats, Floats]:
     """Median distance (S,) of each section's inner points from the axis, and its standard deviation (S,)."""
     number: Indices = np.repeat(np.arange(len(shape_m), dtype=np.int32), np.diff(sections.start))
     place = sections.in_plane(sections.points_of(np.ones(len(shape_m), dtype=np.bool_)).astype(np.float64))
