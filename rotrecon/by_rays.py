@@ -16,7 +16,7 @@ from rotrecon.outcome import Evidence, FailureReason, Fit, FitFailure, PartOf, R
 from rotrecon.parts import Part
 from rotrecon.patch import Patch, patch_of
 from rotrecon.primitives import Primitive
-from rotrecon.recognition import candidates_of, chosen_of, intervals_of, is_possible, margin_of, solid_of
+from rotrecon.recognition import candidates_of, chosen_of, intervals_of, is_possible, solid_of
 from rotrecon.reconstruction import Cut, Reconstruction
 from rotrecon.robust import Ranked, rank
 from rotrecon.section_radii import SectionRadii, section_radii
@@ -130,7 +130,7 @@ def _reconstruction(segmented: Reconstruction, found: _Found, radii: SectionRadi
     length_m = None if found.extent is None else found.extent.length_interval_m
     intervals = intervals_of(chosen, middle_m, length_m)
     candidates = candidates_of(found.ranked, chosen, middle_m, settings)
-    margin = middle_m - max((other.score for other in candidates[1:]), default=0.0)
+    margin = candidates[0].score - max((other.score for other in candidates[1:]), default=0.0)
     doubts = doubts_of(chosen, found.soundness, intervals, radii.circles.state, scene, settings)
     rivals = [one for one in found.ranked if one is not chosen and is_possible(one, chosen, settings)]
     low_m, high_m = intervals.diameter_m
@@ -146,7 +146,7 @@ def _reconstruction(segmented: Reconstruction, found: _Found, radii: SectionRadi
         concave=chosen.surface.side > 0,
         doubts=doubts,
         intervals=intervals,
-        evidence=_evidence(segmented, found, scene, radii, certain, margin),
+        evidence=_evidence(segmented, found, scene, (radii, middle_m), certain, margin),
     )
     cut = Cut(radii.circles, FittedAxis(found.axis.point_m, found.axis.direction, radii.circles.used))
     result = replace(segmented, fit=fit, sections=radii.sections, second_cut=cut, candidates=candidates)
@@ -171,8 +171,15 @@ def _reading(found: _Found, one: Ranked, solid: Primitive, middle_m: float) -> R
 
 
 def _evidence(
-    segmented: Reconstruction, found: _Found, scene: Scene, radii: SectionRadii, certain: bool, middle_m: float
+    segmented: Reconstruction,
+    found: _Found,
+    scene: Scene,
+    sections: tuple[SectionRadii, float],
+    certain: bool,
+    margin: float,
 ) -> Evidence:
+    """`sections` come with the height of the solid's middle."""
+    radii, middle_m = sections
     fit, surface, noise = found.chosen.fit, found.chosen.surface, scene.patch.noise
     assert fit is not None
     depth_m = float(surface.center_m[2]) - surface.side * surface.size_m
@@ -181,7 +188,7 @@ def _evidence(
     noise_m = float(noise.sigma_m(depth_m))
     return Evidence(
         certain=certain,
-        margin=margin_of(found.ranked, found.chosen),
+        margin=margin,
         inlier_share=found.soundness.inlier_share,
         sigma_over_radius=radius_sigma(fit) / surface.size_m,
         noise_m=noise_m,

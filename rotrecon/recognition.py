@@ -79,15 +79,6 @@ def candidates_of(
     )
 
 
-def margin_of(ranked: tuple[Ranked, ...], chosen: Ranked) -> float:
-    """By how much the chosen shape's share of belief is above the next one's."""
-    weight = np.exp([-one.cost for one in ranked])
-    share = weight / weight.sum()
-    own = share[[one is chosen for one in ranked].index(True)]
-    rivals = [value for one, value in zip(ranked, share, strict=True) if one is not chosen]
-    return float(own - max(rivals, default=0.0))
-
-
 def _radius_at(one: Ranked, middle_m: float) -> float:
     surface = one.surface
     return surface.radius_m + surface.slope * middle_m if isinstance(surface, Lateral) else surface.radius_m
