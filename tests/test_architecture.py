@@ -19,7 +19,7 @@ FITTED = [
     "edges", "limbs", "guard", "hypotheses", "robust",
 ]  # fmt: skip
 TURNED = [
-    "extent", "lines", "turned", "looks", "height_radii", "profile", "parts", "smoothness", "turned_start",
+    "lines", "turned", "extent", "looks", "height_radii", "profile", "parts", "smoothness", "turned_start",
     "turned_fit",
 ]  # fmt: skip
 JUDGED = ["intervals", "recognition", "soundness", "judgement", "section_radii", "by_rays"]
@@ -29,7 +29,7 @@ ORDER = [*GIVEN, *PROPOSED_AXIS, *SEGMENTED, *BY_SECTIONS, *BY_RAYS, "reconstruc
 """The flow of data; a stage may import only what stands before it."""
 STAGES = {
     "workspace", "drawing", "segmentation", "circles", "radii", "noise", "planes", "surfaces", "correlation",
-    "edge_lines", "starts", "extent", "tools",
+    "edge_lines", "starts", "tools",
 }  # fmt: skip
 """They know the types, and not each other."""
 TYPES = {
