@@ -63,12 +63,15 @@ def until(condition: Callable[[], bool]) -> None:
         sleep(0.01)
 
 
-AREA = PointerDragged((50.0, 50.0), (150.0, 200.0))
-AXIS = PointerDragged((100.0, 60.0), (100.0, 190.0), shift=True)
+DRAWN = (
+    PointerDragged((100.0, 60.0), (100.0, 190.0), shift=True),
+    PointerDragged((50.0, 50.0), (150.0, 200.0)),
+)
+"""The axis first: an area alone would be measured too."""
 
 
 def test_the_newest_drawing_overtakes_those_between(console: Console, slow: SlowMeasure) -> None:
-    post(console, AREA, AXIS)
+    post(console, *DRAWN)
     assert slow.started.wait(WAIT_S)
     post(console, *(HandleMoved("axis", 1, (100.0 + n, 190.0)) for n in range(1, 30)))
     slow.end()
@@ -80,7 +83,7 @@ def test_the_newest_drawing_overtakes_those_between(console: Console, slow: Slow
 
 def test_the_newest_drawing_does_not_wait_for_an_older_one(console: Console, slow: SlowMeasure) -> None:
     slow.may_end.set()
-    post(console, AREA, AXIS)
+    post(console, *DRAWN)
     assert slow.started.wait(WAIT_S)
     post(console, HandleMoved("axis", 1, (120.0, 190.0)))
     until(lambda: console.session.up_to_date and len(slow.drawings) == 2)
@@ -91,7 +94,7 @@ def test_the_newest_drawing_does_not_wait_for_an_older_one(console: Console, slo
 
 
 def test_no_more_than_two_measurements_are_under_way(console: Console, slow: SlowMeasure) -> None:
-    post(console, AREA, AXIS)
+    post(console, *DRAWN)
     assert slow.started.wait(WAIT_S)
     for n in range(1, 5):
         post(console, HandleMoved("axis", 1, (100.0 + n, 190.0)))
@@ -114,7 +117,7 @@ def test_a_measurement_is_shown_while_it_lasts(
         hints.append(hint(session))
 
     monkeypatch.setattr(console.panels, "show", watch)
-    post(console, AREA, AXIS)
+    post(console, *DRAWN)
     until(lambda: any("Measuring" in text for text in hints))
     slow.end()
     console.wait_until_idle(WAIT_S)
@@ -129,7 +132,7 @@ def test_the_programs_own_mistake_is_told_and_not_the_end(
 
     monkeypatch.setattr("app.measuring.reconstruct", broken)
     monkeypatch.setattr(app.console, "measure", measure)
-    post(console, AREA, AXIS)
+    post(console, *DRAWN)
     console.wait_until_idle(WAIT_S)
     assert console.session.notice is not None
     assert "its own mistake" in console.session.notice.text
@@ -142,7 +145,7 @@ def test_closing_the_console_leaves_nothing_running(
     console = Console(scene.frame, "A pipe", Settings(), port=0, cloud_points=10)
     console.start()
     loop = console.server.get_event_loop()
-    post(console, AREA, AXIS)
+    post(console, *DRAWN)
     assert slow.started.wait(WAIT_S)
     console.stop()
     assert loop.is_closed()
@@ -163,7 +166,7 @@ def test_the_console_survives_pages_that_close_while_they_are_built(
     until(lambda: set(console.pages) == set(console.server.get_clients()) == {40})
     page.close()
     until(lambda: not console.pages)
-    post(console, AREA, AXIS)
+    post(console, *DRAWN)
     console.wait_until_idle(WAIT_S)
     assert console.session.up_to_date
     assert not [record for record in caplog.records if record.name == "app.console"]
@@ -195,7 +198,7 @@ def test_a_mistake_in_showing_is_logged_and_not_the_end(
         page = WirePage(console.address, 0, console.frame)
         until(lambda: "ZeroDivisionError" in caplog.text)
         console.wait_until_idle(WAIT_S)
-    post(console, AREA, AXIS)
+    post(console, *DRAWN)
     console.wait_until_idle(WAIT_S)
     assert console.session.up_to_date
     page.close()
