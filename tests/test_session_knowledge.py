@@ -87,6 +87,9 @@ def test_a_drag_shows_no_proposal_before_it_has_ended(area: PointerDragged, prop
     ended = step(dragging, area)
     assert ended.shown.axis == proposed.drawing.axis
     assert ended.up_to_date, "it is not measured again"
+    refused = told(step(EMPTY, AREA), REFUSED)
+    again = told(step(refused, replace(area, finished=False)), proposed)
+    assert again.objects == refused.objects, "nor is it that of the area before"
 
 
 def test_a_proposed_axis_goes_with_its_area_and_a_drawn_one_stays(
