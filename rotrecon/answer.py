@@ -7,7 +7,7 @@ import numpy as np
 from rotrecon.arrays import Floats
 from rotrecon.circles import SectionState
 from rotrecon.outcome import Evidence, Fit, FitFailure, Intervals, PartOf
-from rotrecon.primitives import Frustum, Primitive
+from rotrecon.primitives import Primitive, Sphere
 from rotrecon.reconstruction import Reconstruction
 from rotrecon.tools import NoTool, ToolProposal
 
@@ -33,7 +33,7 @@ def answer(result: Reconstruction) -> dict[str, Any]:
         "certain": fit.evidence is not None and fit.evidence.certain,
         "concave": fit.concave,
         "diameter_mm": _mm(2 * float(solid.radius_at(0.0))),
-        "length_mm": _mm(solid.ends[1] - solid.ends[0]) if isinstance(solid, Frustum) else None,
+        "length_mm": None if isinstance(solid, Sphere) else _mm(solid.ends[1] - solid.ends[0]),
         "center_m": _plain(solid.center_m),
         "axis": _axis(solid),
         "half_angle_deg": _degrees(solid.half_angle_rad) if solid.kind == "cone" else None,

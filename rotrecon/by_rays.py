@@ -20,10 +20,12 @@ from rotrecon.recognition import candidates_of, chosen_of, intervals_of, is_poss
 from rotrecon.reconstruction import Cut, Reconstruction
 from rotrecon.robust import Ranked, rank
 from rotrecon.section_radii import SectionRadii, section_radii
+from rotrecon.settings import Settings
 from rotrecon.soundness import Soundness, soundness_of
 from rotrecon.starts import robust_line
 from rotrecon.surfaces import Lateral
 from rotrecon.tools import NoTool, Reading, propose_tool
+from rotrecon.turned_fit import fit_turned
 
 
 @dataclass(frozen=True, eq=False)
@@ -49,8 +51,8 @@ def by_rays(segmented: Reconstruction, depth_m: Cloud) -> Reconstruction:
     """
     frame, drawing, settings = segmented.frame, segmented.drawing, segmented.settings
     kept = segmented.segmentation.kept & np.isfinite(depth_m)
-    reachable = bool(segmented.segmentation.history.any())
     patch = patch_of(frame, drawing.area, segmented.segments, kept)
+    reachable = bool(np.isfinite(patch.depth_m[patch.area]).any())
     scene = scene_of(frame.camera, patch, segmented.segments, kept, depth_m.astype(np.float64))
     direction = held_direction(frame, drawing)
     failure = too_little(scene, reachable, settings)
@@ -88,6 +90,33 @@ def _find(scene: Scene, held: Held, segmented: Reconstruction) -> _Found | FitFa
             f"the depths speak for a {ranked[0].shape} rather than a {kind}; choose that, or let the program decide"
         )
         return FitFailure(FailureReason.NOT_THIS_KIND, advice)
+    found = _followed_along(ranked, chosen, scene, settings)
+    if kind is not None or not isinstance(chosen.surface, Lateral) or not _is_part_only(found, chosen, scene, settings):
+        return found
+    turned = fit_turned(scene.patch, scene.ridge, chosen.fit)
+    if turned is None:
+        return found
+    whole = Ranked("revolution", turned.surface, turned, 0.0)
+    better = _followed_along((whole, *(replace(one, cost=one.cost + 1.0) for one in ranked)), whole, scene, settings)
+    if isinstance(better, FitFailure) or better.soundness.inlier_share < settings.turned_inlier_share:
+        return found
+    return better
+
+
+def _is_part_only(found: _Found | FitFailure, chosen: Ranked, scene: Scene, settings: Settings) -> bool:
+    """Whether a cylinder or a cone explains a part of the object along its axis, or nothing at all."""
+    if isinstance(found, FitFailure):
+        return found.reason == FailureReason.NOT_ROUND
+    assert isinstance(chosen.surface, Lateral)
+    low, high = np.percentile(chosen.surface.heights(scene.ridge.points_m), [5, 95])
+    covered = min(high, found.ends_m[1]) - max(low, found.ends_m[0])
+    return bool(covered < settings.covered_length * (high - low))
+
+
+def _followed_along(
+    ranked: tuple[Ranked, ...], chosen: Ranked, scene: Scene, settings: Settings
+) -> _Found | FitFailure:
+    """How far along its axis the chosen shape is there, and how sound it is; or why it is no result."""
     assert chosen.fit is not None
     surface = chosen.surface
     if isinstance(surface, Lateral):

@@ -143,7 +143,9 @@ def _border(surface: Lateral, patch: Patch, start_m: float, way: int, farthest_m
     points = on_axis[:, None] + np.maximum(radius_at(surface, height), 0.0)[:, None, None] * round_about
     place_px = np.clip(patch.camera.project(points.reshape(-1, 3)), -FARTHEST_PX, FARTHEST_PX)
     pixel = patch.pixel_of(place_px).reshape(len(outward_m), -1)
-    covered = ((pixel >= 0) & patch.area[pixel]).mean(axis=1) >= 0.5
+    share = ((pixel >= 0) & patch.area[pixel]).mean(axis=1)
+    # an object wider than the area is never covered by half
+    covered = share >= min(0.5, max(float(share[0]), 1.0 / len(COVER_ANGLES_RAD))) / (1.0 if share[0] >= 0.5 else 2.0)
     return float(outward_m[-1] if covered.all() else outward_m[int(np.argmin(covered))])
 
 

@@ -19,6 +19,8 @@ CAUCHY = 2.385
 TO_SIGMA = 1.4826
 """Standard deviation over median magnitude, for normal errors."""
 FIRST_DAMPING, MOST_DAMPING = 1e-3, 1e6
+LARGEST_M = 100.0
+"""A radius beyond this is that of nothing an arm could hold."""
 SETTLED = 1e-4
 """A step that changes the cost by less than this share is the last."""
 
@@ -199,7 +201,7 @@ def refine(
         step = _step(gradient, information, damping, free, units)
         trial = surface.stepped(step)
         trial_cost, trial_gradient, trial_information = _normal_equations(trial, measurements, weighting, loss, units)
-        if trial.size_m > 0 and trial_cost <= cost:
+        if 0 < trial.size_m < LARGEST_M and trial_cost <= cost:
             converged = cost - trial_cost <= SETTLED * max(cost, 1e-300)
             surface, cost, gradient, information = trial, trial_cost, trial_gradient, trial_information
             damping /= 10.0

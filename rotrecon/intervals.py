@@ -7,6 +7,7 @@ from rotrecon.arrays import Floats
 from rotrecon.outcome import Intervals, Range
 from rotrecon.ray_fit import RayFit
 from rotrecon.surfaces import Ball, Lateral
+from rotrecon.turned import AXIS_PARAMETERS, Turned
 
 PLANE_95, SPACE_95 = 2.448, 2.796
 """Radius of the circle and the ball that hold 95 % of a normal distribution, in its standard deviations."""
@@ -40,6 +41,21 @@ def lateral_intervals(fit: RayFit, surface: Lateral, middle_m: float, length_m: 
     )
 
 
+def turned_intervals(fit: RayFit, surface: Turned, middle_m: float, length_m: Range | None) -> Intervals:
+    """Of a general surface of revolution, its diameter at a height of `middle_m` from the surface's centre."""
+    quantile = quantile_95(fit)
+    at_middle = surface.basis(np.array([middle_m]))[:, 0]
+    own = fit.covariance[AXIS_PARAMETERS:, AXIS_PARAMETERS:]
+    sigma_m = float(np.sqrt(max(at_middle @ own @ at_middle, 0.0)))
+    spread = quantile / 1.96
+    return Intervals(
+        diameter_m=_interval(2 * float(surface.curve(np.array([middle_m]))[0][0]), 2 * quantile * sigma_m),
+        center_m=spread * PLANE_95 * _widest(_at_height(fit.covariance, middle_m)),
+        direction_rad=spread * PLANE_95 * _widest(fit.covariance[2:4, 2:4]),
+        length_m=length_m,
+    )
+
+
 def ball_intervals(fit: RayFit, ball: Ball) -> Intervals:
     """Of a sphere."""
     quantile = quantile_95(fit)
@@ -51,6 +67,9 @@ def ball_intervals(fit: RayFit, ball: Ball) -> Intervals:
 
 def radius_sigma(fit: RayFit) -> float:
     """Standard error of the radius at the surface's centre."""
+    if isinstance(fit.surface, Turned):
+        low, high = turned_intervals(fit, fit.surface, (fit.surface.low_m + fit.surface.high_m) / 2, None).diameter_m
+        return (high - low) / 2 / 2 / quantile_95(fit)
     return _radius_sigma(fit.covariance, 0.0) if len(fit.free) > 4 else float(np.sqrt(fit.covariance[3, 3]))
 
 

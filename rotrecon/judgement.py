@@ -45,6 +45,9 @@ def failure_of(chosen: Ranked, soundness: Soundness, scene: Scene, settings: Set
         advice = f"the object is {beyond} than the diameters that were given; widen them"
         return FitFailure(FailureReason.CONSTRAINED, advice)
     unsure = radius_sigma(chosen.fit) / surface.size_m
+    if unsure > settings.flat_sigma_over_radius and soundness.arc_rad >= settings.shortest_arc_rad:
+        advice = f"{arc_deg:.0f} degrees of something are seen, but no one radius explains them; {DRAW_CLOSE}"
+        return FitFailure(FailureReason.NOT_ROUND, advice)
     if unsure > settings.flat_sigma_over_radius or soundness.arc_rad < settings.flat_arc_rad:
         advice = f"what is drawn is flat: no radius can be told from it, {arc_deg:.0f} degrees are seen; {DRAW_CLOSE}"
         return FitFailure(FailureReason.FLAT, advice)

@@ -89,7 +89,76 @@ class Sphere:
         return np.linalg.norm(points_m - self.center_m, axis=-1) - self.radius_m
 
 
-Primitive = Frustum | Sphere
+@dataclass(frozen=True, eq=False)
+class Revolution:
+    """A general solid of revolution: radii at positions along its axis, straight between them.
+
+    Raises ValueError for a profile that cannot be one.
+    """
+
+    center_m: Floats
+    """(3,) a point of the axis between the ends; what is said of its middle is said of here."""
+    direction: Floats
+    """(3,) unit, along the operator's stroke."""
+    along_m: Floats
+    """(n,) rising positions from the centre, the ends first and last, 0 between them."""
+    radii_m: Floats
+    """(n,) at those positions."""
+    kind: Literal["revolution"] = "revolution"
+
+    def __post_init__(self) -> None:
+        along_m, radii_m = self.along_m, self.radii_m
+        if along_m.ndim != 1 or len(along_m) < 2 or along_m.shape != radii_m.shape:
+            raise ValueError(f"a profile is two positions or more and as many radii: {along_m.shape}, {radii_m.shape}")
+        if not (np.diff(along_m) > 0).all() or not along_m[0] < 0 < along_m[-1]:
+            raise ValueError("the positions of a profile rise from below 0 to above it")
+        if not (radii_m >= 0).all():
+            raise ValueError("no radius of a profile is negative")
+        freeze(self)
+
+    @property
+    def radius_m(self) -> float:
+        """At the middle."""
+        return float(self.radius_at(0.0))
+
+    def radius_at(self, along_m: Floats | float) -> Floats:
+        """Radius at signed distances from the middle, along the axis; beyond an end that of the end."""
+        return np.interp(np.asarray(along_m, dtype=np.float64), self.along_m, self.radii_m)
+
+    def slope_at(self, along_m: Floats | float) -> Floats:
+        """Growth of the radius at signed distances from the middle; where it bends, that of the piece before it."""
+        slopes = np.concatenate([[0.0], np.diff(self.radii_m) / np.diff(self.along_m), [0.0]])
+        return slopes[np.searchsorted(self.along_m, np.asarray(along_m, dtype=np.float64))]
+
+    @property
+    def ends(self) -> tuple[float, float]:
+        """Signed distances of the two ends from the middle."""
+        return (float(self.along_m[0]), float(self.along_m[-1]))
+
+    def moved(self, T_target_source: Floats) -> "Revolution":
+        """The same solid in another frame."""
+        center_m, direction = transform(T_target_source, self.center_m), rotate(T_target_source, self.direction)
+        return Revolution(center_m, direction, self.along_m, self.radii_m)
+
+    def distance(self, points_m: Floats | Cloud) -> Floats:
+        """Signed distance (...) of points (..., 3) from the surface, ends unbounded; outside is positive.
+
+        Orthogonal to the piece of the profile that a point is beside, and so to first order to the surface.
+        """
+        offset = points_m - self.center_m
+        along = offset @ self.direction
+        across = np.linalg.norm(offset - along[..., None] * self.direction, axis=-1)
+        return (across - self.radius_at(along)) / np.hypot(1.0, self.slope_at(along))
+
+
+Simple = Frustum | Sphere
+"""Solids that a handful of numbers describe."""
+Primitive = Simple | Revolution
+
+
+def in_words(kind: str) -> str:
+    """A kind of solid as it is called in a sentence."""
+    return "solid of revolution" if kind == "revolution" else kind
 
 
 def basis_across(direction: Floats, toward: Floats) -> tuple[Floats, Floats]:

@@ -7,6 +7,7 @@ import numpy as np
 from rotrecon.arrays import Bools, Floats, Indices, freeze
 from rotrecon.correlation import Likeness, likeness_of
 from rotrecon.fitting import (
+    TUKEY,
     Depths,
     MatchedDepths,
     Measurement,
@@ -135,7 +136,8 @@ def _finished(
         (_information(outline.predict(surface), outline_share) for outline, outline_share in outlines),
         start=np.zeros((len(free), len(free))),
     )
-    information = share * (columns * weight) @ columns.T + from_outlines
+    believed = weight > 0
+    information = share * float(_response(scaled[believed]).mean()) * (columns @ columns.T) + from_outlines
     smeared = np.empty_like(columns)
     for number, column in enumerate(columns):
         image = np.zeros(patch.shape)
@@ -157,6 +159,12 @@ def _tamed(surface: Surface, patch: Patch, pixels: Indices, columns: Floats) -> 
     steepest = np.sqrt(surface.size_m * patch.focal_px / (2 * TAMED_PX * depth_m)) / patch.noise.sigma_m(depth_m)
     by_radius = np.abs(columns[3 if len(columns) == 4 else 4])
     return np.minimum(1.0, steepest / np.maximum(by_radius, 1e-12))
+
+
+def _response(residual: Floats) -> Floats:
+    """Derivative (N,) of a residual's pull by the residual, both in sigmas: less than its weight."""
+    squared = np.square(residual / TUKEY)
+    return (1.0 - squared) * (1.0 - 5.0 * squared)
 
 
 def _information(prediction: Prediction, share: float) -> Floats:

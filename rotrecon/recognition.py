@@ -2,13 +2,17 @@
 
 import numpy as np
 
-from rotrecon.intervals import ball_intervals, lateral_intervals
+from rotrecon.intervals import ball_intervals, lateral_intervals, turned_intervals
 from rotrecon.outcome import Candidate, Intervals, Range
-from rotrecon.primitives import Frustum, Kind, Primitive, Sphere
+from rotrecon.primitives import Frustum, Kind, Primitive, Revolution, Sphere
 from rotrecon.radii import SHAPE_OF_KIND
 from rotrecon.robust import Ranked
 from rotrecon.settings import Settings
 from rotrecon.surfaces import Ball, Lateral
+from rotrecon.turned import Turned
+
+PROFILE_POINTS = 65
+"""Heights at which a smooth profile is told: an odd number, one of them the middle."""
 
 
 def chosen_of(ranked: tuple[Ranked, ...], kind: Kind | None, settings: Settings) -> Ranked | None:
@@ -29,7 +33,7 @@ def chosen_of(ranked: tuple[Ranked, ...], kind: Kind | None, settings: Settings)
 
 def half_angle_rad(one: Ranked) -> float:
     """Of a shape; 0 for all but cones."""
-    return float(np.arctan(one.surface.slope)) if isinstance(one.surface, Lateral) else 0.0
+    return float(np.arctan(one.surface.slope)) if one.shape == "cone" and isinstance(one.surface, Lateral) else 0.0
 
 
 def is_possible(one: Ranked, chosen: Ranked, settings: Settings) -> bool:
@@ -57,6 +61,8 @@ def intervals_of(one: Ranked, middle_m: float, length_m: Range | None) -> Interv
     assert one.fit is not None
     if isinstance(one.surface, Ball):
         return ball_intervals(one.fit, one.surface)
+    if isinstance(one.surface, Turned):
+        return turned_intervals(one.fit, one.surface, middle_m, length_m)
     return lateral_intervals(one.fit, one.surface, middle_m, length_m)
 
 
@@ -81,6 +87,8 @@ def candidates_of(
 
 def _radius_at(one: Ranked, middle_m: float) -> float:
     surface = one.surface
+    if isinstance(surface, Turned):
+        return float(surface.curve(np.array([middle_m]))[0][0])
     return surface.radius_m + surface.slope * middle_m if isinstance(surface, Lateral) else surface.radius_m
 
 
@@ -89,6 +97,8 @@ def solid_of(one: Ranked, kind: Kind | None, ends_m: Range, direction: np.ndarra
     surface = one.surface
     if isinstance(surface, Ball):
         return Sphere(surface.center_m, direction, surface.radius_m)
+    if isinstance(surface, Turned):
+        return _turned_solid(surface, ends_m)
     length_m, middle_m = ends_m[1] - ends_m[0], (ends_m[0] + ends_m[1]) / 2
     radius_m = surface.radius_m + surface.slope * middle_m
     thin = 2 * radius_m <= settings.rod_diameter_m and length_m >= 2 * settings.rod_length_over_diameter * radius_m
@@ -100,4 +110,16 @@ def solid_of(one: Ranked, kind: Kind | None, ends_m: Range, direction: np.ndarra
         length_m=length_m,
         radius_m=radius_m,
         half_angle_rad=half_angle_rad(one),
+    )
+
+
+def _turned_solid(surface: Turned, ends_m: Range) -> Revolution:
+    """A turned surface between two heights from its centre."""
+    middle_m = (ends_m[0] + ends_m[1]) / 2
+    along_m = np.linspace(ends_m[0], ends_m[1], PROFILE_POINTS)
+    return Revolution(
+        center_m=surface.center_m + middle_m * surface.direction,
+        direction=surface.direction,
+        along_m=along_m - middle_m,
+        radii_m=surface.curve(along_m)[0],
     )

@@ -2,6 +2,7 @@
 
 from dataclasses import dataclass, replace
 from operator import itemgetter
+from typing import Literal
 
 import numpy as np
 
@@ -28,7 +29,7 @@ OUTLINE_ROUNDS = 2
 class Ranked:
     """One shape, and how much less credible than the best it is."""
 
-    shape: Shape
+    shape: Shape | Literal["revolution"]
     surface: Surface
     fit: RayFit | None
     """None for a shape that was hopeless from the start."""

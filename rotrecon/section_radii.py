@@ -14,6 +14,7 @@ from rotrecon.profile import profile_of
 from rotrecon.ray_fit import RayFit
 from rotrecon.settings import Settings
 from rotrecon.surfaces import Ball, Surface
+from rotrecon.turned import Turned
 
 INNER = 0.85
 """Share of the radius within which depths say how far out a section's surface is; farther out they are flattened."""
@@ -78,6 +79,8 @@ def _shape(surface: Surface, heights_m: Floats) -> Floats:
     """Radius (S,) of a surface at heights (S,) along its axis."""
     if isinstance(surface, Ball):
         return np.sqrt(np.maximum(surface.radius_m**2 - heights_m**2, 0.0))
+    if isinstance(surface, Turned):
+        return surface.curve(heights_m)[0]
     return surface.radius_m + surface.slope * heights_m
 
 

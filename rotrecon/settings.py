@@ -78,6 +78,10 @@ class Settings:
     """Width of the interval of the diameter over the diameter: more is no size."""
     certain_interval: float = 0.25
     """The same for a kind that is certain: what is known so badly may be something else."""
+    covered_length: float = 0.7
+    """Share of the object's length that a cylinder or a cone must explain not to be a part of something longer."""
+    turned_inlier_share: float = 0.85
+    """Of the depths inside the outline, those that must agree with a general surface of revolution."""
     excluded_cost: float = 4.6
     """Half the information criterion by which a kind must be worse to be excluded: a hundred times less credible."""
     tapers_cost: float = 15.0

@@ -119,13 +119,16 @@ def _round(surface: Turned, task: _Task, guard: float, likeness: Likeness, most:
     kept = np.ix_(task.free, task.free)
     covariance = np.zeros((AXIS_PARAMETERS, AXIS_PARAMETERS))
     covariance[kept] = np.linalg.pinv(information[kept], hermitian=True)
-    step = np.concatenate([covariance @ gradient, np.zeros(KNOTS)])
-    radius = (surface.curve(heights)[0] + found.change_m)[known]
-    through = turned_from(surface, heights[known], radius, KNOTS)
+    step = covariance @ gradient
     own = np.maximum(found.sums.own[known], 1e-300)
-    radii = Radii(heights[known], radius, 1.0 / np.sqrt(own), found.sums.mixed[:, known] / own)
+    lever = found.sums.mixed[:, known] / own
+    # each radius belongs to the axis it was found about, and follows the step
+    radius = (surface.curve(heights)[0] + found.change_m)[known] - step @ lever
+    through = turned_from(surface, heights[known], radius, KNOTS)
+    radii = Radii(heights[known], radius, 1.0 / np.sqrt(own), lever)
     likeness = _likeness(looks, found, task.patch)
-    return _Axis(through.stepped(step), radii, guard, looks.pixels, found.sigma, likeness, covariance)
+    stepped = through.stepped(np.concatenate([step, np.zeros(KNOTS)]))
+    return _Axis(stepped, radii, guard, looks.pixels, found.sigma, likeness, covariance)
 
 
 def _likeness(looks: Looks, found: HeightRadii, patch: Patch) -> Likeness:

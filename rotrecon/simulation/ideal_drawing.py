@@ -6,7 +6,7 @@ import numpy as np
 from rotrecon.arrays import Floats
 from rotrecon.camera import PinholeCamera
 from rotrecon.drawing import AreaOfInterest, Drawing, ObjectAxis
-from rotrecon.primitives import Frustum, Primitive, Sphere, basis_across
+from rotrecon.primitives import Frustum, Simple, Sphere, basis_across
 
 MARGIN_PX = 6.0
 """Distance of the area from the outline: nobody draws closer, and the background must be seen to be told apart."""
@@ -20,7 +20,7 @@ BALL_VERTICES = 16
 """Vertices of the area round a ball: between them it is still outside the outline."""
 
 
-def outline_px(solid: Primitive, camera: PinholeCamera) -> Floats:
+def outline_px(solid: Simple, camera: PinholeCamera) -> Floats:
     """Convex outline (N, 2), px, of a solid in camera coordinates; NaN when part of it is behind the camera."""
     if isinstance(solid, Sphere):
         return _ball_outline(solid, camera, CIRCLE_POINTS)
@@ -31,7 +31,7 @@ def outline_px(solid: Primitive, camera: PinholeCamera) -> Floats:
     return rims[corners[:, 0]]
 
 
-def ideal_drawing(solid: Primitive, camera: PinholeCamera) -> Drawing:
+def ideal_drawing(solid: Simple, camera: PinholeCamera) -> Drawing:
     """Area and stroke, to a tenth of a pixel, round a solid in camera coordinates that is in front of the camera.
 
     A frustum's area is a quadrangle across the middle of its lateral surface, ends left out; a ball's is a

@@ -8,7 +8,7 @@ from rotrecon.arrays import Floats, freeze
 from rotrecon.camera import PinholeCamera
 from rotrecon.drawing import Drawing
 from rotrecon.frame import Frame, StereoNoise
-from rotrecon.primitives import Frustum, Primitive, Sphere, basis_across
+from rotrecon.primitives import Frustum, Simple, Sphere, basis_across
 from rotrecon.simulation.ideal_drawing import ideal_drawing, outline_px
 from rotrecon.simulation.rendering import Body, RenderedView, World, render
 from rotrecon.simulation.scenery import (
@@ -42,7 +42,7 @@ ATTEMPTS = 200
 class ObjectModel:
     """An object that can be simulated, its middle at the origin and its axis along z."""
 
-    shape: Primitive
+    shape: Simple
     material: MaterialMaker
 
 
@@ -69,9 +69,9 @@ class Simulated:
     object_name: str
     seed: int
     frame: Frame
-    solid: Primitive
+    solid: Simple
     """In base coordinates."""
-    solid_in_camera: Primitive
+    solid_in_camera: Simple
     drawing: Drawing
     """What an ideal operator would draw."""
     world: World
@@ -134,7 +134,7 @@ def _camera_pose(rng: np.random.Generator) -> Floats:
     return pose
 
 
-def _object_pose(shape: Primitive, camera: PinholeCamera, rng: np.random.Generator) -> Floats:
+def _object_pose(shape: Simple, camera: PinholeCamera, rng: np.random.Generator) -> Floats:
     """A pose (4, 4) of the object before the camera that keeps it in both pictures of a stereo camera."""
     size = np.array([camera.width, camera.height])
     for _ in range(ATTEMPTS):
@@ -150,7 +150,7 @@ def _object_pose(shape: Primitive, camera: PinholeCamera, rng: np.random.Generat
     raise ValueError(f"an object of this size does not fit a picture of {size[0]} x {size[1]} px at 0.6 to 1.2 m")
 
 
-def _fits(solid: Primitive, camera: PinholeCamera) -> bool:
+def _fits(solid: Simple, camera: PinholeCamera) -> bool:
     outline = outline_px(solid, camera)
     if not np.isfinite(outline).all():
         return False
@@ -161,7 +161,7 @@ def _fits(solid: Primitive, camera: PinholeCamera) -> bool:
     return bool((drawn >= low).all() and (drawn <= high).all())
 
 
-def _depth_range_m(solid: Primitive) -> tuple[float, float]:
+def _depth_range_m(solid: Simple) -> tuple[float, float]:
     """Least and greatest z of a solid."""
     middle, lean = float(solid.center_m[2]), float(solid.direction[2])
     if isinstance(solid, Sphere):
