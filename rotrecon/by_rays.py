@@ -94,7 +94,8 @@ def _find(scene: Scene, held: Held, segmented: Reconstruction) -> _Found | FitFa
     if kind is not None or not isinstance(chosen.surface, Lateral) or not _is_part_only(found, chosen, scene, settings):
         return found
     turned = fit_turned(scene.patch, scene.ridge, chosen.fit)
-    if turned is None:
+    assert chosen.fit is not None
+    if turned is None or not turned.sigma < settings.turned_sigma * chosen.fit.sigma:
         return found
     whole = Ranked("revolution", turned.surface, turned, 0.0)
     better = _followed_along((whole, *(replace(one, cost=one.cost + 1.0) for one in ranked)), whole, scene, settings)
@@ -104,9 +105,12 @@ def _find(scene: Scene, held: Held, segmented: Reconstruction) -> _Found | FitFa
 
 
 def _is_part_only(found: _Found | FitFailure, chosen: Ranked, scene: Scene, settings: Settings) -> bool:
-    """Whether a cylinder or a cone explains a part of the object along its axis, or nothing at all."""
+    """Whether a cylinder or a cone explains a part of the object along its axis, or all of it badly."""
     if isinstance(found, FitFailure):
         return found.reason == FailureReason.NOT_ROUND
+    low_m, high_m = intervals_of(chosen, 0.0, None).diameter_m
+    if high_m - low_m > settings.certain_interval * (high_m + low_m) / 2:
+        return True
     assert isinstance(chosen.surface, Lateral)
     low, high = np.percentile(chosen.surface.heights(scene.ridge.points_m), [5, 95])
     covered = min(high, found.ends_m[1]) - max(low, found.ends_m[0])
@@ -164,7 +168,7 @@ def _reconstruction(segmented: Reconstruction, found: _Found, radii: SectionRadi
     rivals = [one for one in found.ranked if one is not chosen and is_possible(one, chosen, settings)]
     low_m, high_m = intervals.diameter_m
     narrow = high_m - low_m <= settings.certain_interval * (high_m + low_m) / 2
-    certain = narrow and not doubts and not rivals
+    certain = narrow and not doubts and not rivals and chosen.shape != "revolution"
     T_base_camera = segmented.frame.T_base_camera
     fit = Fit(
         solid=solid,

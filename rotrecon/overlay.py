@@ -1,15 +1,13 @@
 """Depth, segmentation and the re-projected solid, drawn on the camera frame (paper figures 1, 3 and 4)."""
 
-from dataclasses import dataclass
 from typing import Literal, cast
 
 import cv2
 import numpy as np
 
-from rotrecon.arrays import Bools, Bytes, Cloud, Floats, freeze
-from rotrecon.camera import PinholeCamera
+from rotrecon.arrays import Bools, Bytes, Cloud, Floats
+from rotrecon.curves import Outline, curves_of
 from rotrecon.outcome import Fit
-from rotrecon.primitives import Frustum, Sphere, basis_across
 from rotrecon.reconstruction import Reconstruction
 from rotrecon.segmentation import PixelHistory, Segmentation
 
@@ -20,22 +18,7 @@ NAVY, LIGHT_BLUE, YELLOW, RED = (16, 28, 110), (120, 196, 240), (250, 214, 40), 
 LATER_RUN = (96, 84, 168)
 """Of pixels that the second or a later run called distant."""
 OUTLINE_COLOR = (255, 60, 200)
-CURVE_POINTS = 97
-"""Enough for a polygon to pass for a circle at any size a frame can show."""
 DASH_PX, GAP_PX = 7.0, 5.0
-
-
-@dataclass(frozen=True, eq=False)
-class Outline:
-    """A curve on the solid, re-projected on the frame."""
-
-    points_px: Floats
-    """(n, 2); NaN behind the camera."""
-    visible: Bools
-    """(n,) False where the solid itself hides the curve."""
-
-    def __post_init__(self) -> None:
-        freeze(self)
 
 
 def depth_range_m(depth_m: Cloud) -> tuple[float, float]:
@@ -100,11 +83,10 @@ def _categories(segmentation: Segmentation, stage: Stage) -> Bytes:
 
 
 def outlines(result: Reconstruction) -> tuple[Outline, ...]:
-    """The solid's curves on the frame: bases and limbs of a cylinder or cone, diametric section and limb of a ball."""
+    """The solid's curves on the frame, all of them in sight where it is seen from inside."""
     if not isinstance(result.fit, Fit):
         return ()
-    solid, camera = result.fit.solid, result.frame.camera
-    curves = _sphere_curves(solid, camera) if isinstance(solid, Sphere) else _frustum_curves(solid, camera)
+    curves = curves_of(result.fit.solid, result.frame.camera)
     if result.fit.concave:
         return tuple(Outline(curve.points_px, np.ones(len(curve.visible), dtype=np.bool_)) for curve in curves)
     return curves
@@ -136,58 +118,6 @@ def first_cut_line(result: Reconstruction, section: int) -> int | None:
     in_section = np.isin(result.segments.pixel, result.sections.pixels_in(section))
     rows, _ = np.nonzero(in_section & result.segmentation.kept)
     return int(np.bincount(rows).argmax()) if len(rows) else None
-
-
-def _ring(center_m: Floats, normal: Floats, radius_m: float) -> Floats:
-    """Points (n, 3) of a circle round a normal."""
-    x, y = basis_across(normal, -center_m)
-    angle = np.linspace(0, 2 * np.pi, CURVE_POINTS)[:, None]
-    return center_m + radius_m * (np.cos(angle) * x + np.sin(angle) * y)
-
-
-def _sphere_curves(ball: Sphere, camera: PinholeCamera) -> tuple[Outline, ...]:
-    """The diametric section across the drawn axis, and the limb where sight lines touch the ball."""
-    section = _ring(ball.center_m, ball.direction, ball.radius_m)
-    hidden = ((section - ball.center_m) * section).sum(axis=1) > 0
-    curves = [Outline(camera.project(section), ~hidden)]
-    away_m = float(np.linalg.norm(ball.center_m))
-    shrink = 1 - (ball.radius_m / away_m) ** 2
-    if shrink > 0:
-        limb = _ring(ball.center_m * shrink, ball.center_m / away_m, ball.radius_m * np.sqrt(shrink))
-        curves.append(Outline(camera.project(limb), np.ones(len(limb), dtype=np.bool_)))
-    return tuple(curves)
-
-
-def _frustum_curves(solid: Frustum, camera: PinholeCamera) -> tuple[Outline, ...]:
-    """The two bases, and the two lines where sight lines touch the side.
-
-    The tangent plane is the same along a whole generator, so a point of the rim is seen when the side there or the
-    base itself faces the camera, which is the origin.
-    """
-    slope = float(np.tan(solid.half_angle_rad))
-    curves: list[Outline] = []
-    for end, outward in zip(solid.ends, (-solid.direction, solid.direction), strict=True):
-        center = solid.center_m + end * solid.direction
-        rim = _ring(center, solid.direction, float(solid.radius_at(end)))
-        radial = (rim - center) / max(float(solid.radius_at(end)), 1e-12)
-        side_faces = ((radial - slope * solid.direction) * rim).sum(axis=1) < 0
-        curves.append(Outline(camera.project(rim), side_faces | bool(center @ outward < 0)))
-    for radial in _limb_directions(solid, slope):
-        line = [solid.center_m + end * solid.direction + solid.radius_at(end) * radial for end in solid.ends]
-        curves.append(Outline(camera.project(np.array(line)), np.ones(2, dtype=np.bool_)))
-    return tuple(curves)
-
-
-def _limb_directions(solid: Frustum, slope: float) -> list[Floats]:
-    """Unit vectors (3,) across the axis to the two generators that sight lines touch; none from inside the cone."""
-    x, y = basis_across(solid.direction, -solid.center_m)
-    toward = np.array([solid.center_m @ x, solid.center_m @ y])
-    offset = solid.radius_m - slope * float(solid.center_m @ solid.direction)
-    ratio = -offset / max(float(np.linalg.norm(toward)), 1e-12)
-    if abs(ratio) >= 1:
-        return []
-    middle, half = np.arctan2(toward[1], toward[0]), np.arccos(ratio)
-    return [np.cos(angle) * x + np.sin(angle) * y for angle in (middle - half, middle + half)]
 
 
 def _pieces(curve: Outline) -> list[tuple[tuple[int, int], tuple[int, int], bool]]:

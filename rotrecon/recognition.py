@@ -40,7 +40,7 @@ def is_possible(one: Ranked, chosen: Ranked, settings: Settings) -> bool:
     """Whether the object may be of a shape other than the chosen one, in a way that makes a difference."""
     if one is chosen:
         return True
-    if one.fit is None or one.cost - chosen.cost > settings.excluded_cost:
+    if one.fit is None or chosen.shape == "revolution" or one.cost - chosen.cost > settings.excluded_cost:
         return False
     if one.shape == "cone" and chosen.shape == "cylinder":
         # a cone holds every cylinder: it is another kind only as far as it may taper

@@ -8,7 +8,7 @@ import numpy as np
 
 from rotrecon.arrays import Floats, freeze
 from rotrecon.outcome import Range
-from rotrecon.primitives import Frustum, Primitive
+from rotrecon.primitives import Frustum, Primitive, Revolution, in_words
 from rotrecon.tool_table import Tool, ToolTable
 
 STRAIGHT_RAD: Range = (-0.05, 0.05)
@@ -140,7 +140,7 @@ def _kind(tool: Tool, reading: Reading) -> _Objection | None:
     taper_rad = reading.half_angle_rad or (half_angle_rad, half_angle_rad)
     if solid.kind != "cone" or not {"cylinder", "rod"} & set(tool.takes) or not _overlap(taper_rad, STRAIGHT_RAD):
         taper = f" of {degrees(abs(half_angle_rad)):.1f} degrees" if solid.kind == "cone" else ""
-        return _Objection(f"does not take a {solid.kind}{taper}")
+        return _Objection(f"does not take a {in_words(solid.kind)}{taper}")
     if _within(taper_rad, STRAIGHT_RAD):
         return None
     has = _range((degrees(taper_rad[0]), degrees(taper_rad[1])))
@@ -149,12 +149,14 @@ def _kind(tool: Tool, reading: Reading) -> _Objection | None:
 
 
 def _diameter(tool: Tool, reading: Reading) -> _Objection | None:
+    """A general solid of revolution must not be wider than the tool anywhere: how broad its jaws are is not known."""
     low, high = tool.diameter_mm
-    diameter_mm = _diameter_mm(reading)
-    if _within(diameter_mm, tool.diameter_mm):
+    middle_mm, widest_mm = _diameter_mm(reading), _widest_mm(reading)
+    if middle_mm[0] >= low and widest_mm[1] <= high:
         return None
-    why = f"takes {low:g} to {high:g} mm, the {reading.solid.kind} has {_range(diameter_mm)} mm"
-    if not _overlap(diameter_mm, tool.diameter_mm):
+    at_widest = "" if widest_mm == middle_mm else f" in the middle and {_range(widest_mm)} mm where it is widest"
+    why = f"takes {low:g} to {high:g} mm, the {in_words(reading.solid.kind)} has {_range(middle_mm)} mm{at_widest}"
+    if middle_mm[1] < low or widest_mm[0] > high:
         return _Objection(why)
     return _Objection(why, "look at it from nearer, or from the side", certain=False)
 
@@ -165,7 +167,7 @@ def _length(tool: Tool, reading: Reading) -> _Objection | None:
     if ratio[0] >= least:
         return None
     has = f"at least {ratio[0]:.1f}" if ratio[1] == inf else _range(ratio)
-    why = f"needs an object {least:g} times as long as thick, the {reading.solid.kind} is {has} times"
+    why = f"needs an object {least:g} times as long as thick, the {in_words(reading.solid.kind)} is {has} times"
     return _Objection(why, "draw more of its length if there is more", certain=ratio[1] < least)
 
 
@@ -181,12 +183,24 @@ def _diameter_mm(reading: Reading) -> Range:
     return 1000 * low, 1000 * high
 
 
+def _widest_mm(reading: Reading) -> Range:
+    """Of a general solid of revolution where it is widest, off by as much as in the middle; of others in the middle."""
+    low, high = _diameter_mm(reading)
+    solid = reading.solid
+    more = 2000 * (float(solid.radii_m.max()) - solid.radius_m) if isinstance(solid, Revolution) else 0.0
+    return low + more, high + more
+
+
 def _length_over_diameter(reading: Reading) -> Range:
-    """Between which limits it is, whatever diameter goes with which length; 1 for a sphere."""
+    """Between which limits it is, whatever diameter goes with which length; 1 for a sphere.
+
+    The diameter is the widest: what is asked for is an object long enough to be held across its axis, and the part
+    where that is least true decides.
+    """
     low, high = reading.solid.ends
     if reading.solid.kind == "sphere":
         return 1.0, 1.0
-    thin_mm, thick_mm = _diameter_mm(reading)
+    thin_mm, thick_mm = _widest_mm(reading)
     short_m, long_m = reading.length_m or (high - low,) * 2
     return 1000 * short_m / thick_mm if thick_mm > 0 else inf, 1000 * long_m / thin_mm if thin_mm > 0 else inf
 

@@ -132,12 +132,12 @@ def errors_of_fits(knees: tuple[Knee, ...], slope: float, sigma_px: float, corre
 
 
 @pytest.mark.parametrize(
-    ("sigma_px", "correlation_px", "off"), [(0.25, 0.0, 0.15), (0.15, 4.0, 0.4)], ids=["white", "correlated"]
+    ("sigma_px", "correlation_px", "least"), [(0.25, 0.0, 0.85), (0.15, 4.0, 0.5)], ids=["white", "correlated"]
 )
-def test_errors_of_fits_are_as_large_as_their_intervals_say(sigma_px, correlation_px, off):
-    """95 % are within 1: their mean is 0, and their standard deviation 1 / 1.96."""
+def test_errors_of_fits_are_as_large_as_their_intervals_say(sigma_px, correlation_px, least):
+    """95 % are within 1: their mean is 0, and their standard deviation 1 / 1.96, or less where limbs are distrusted."""
     bodies = ((CYLINDER, 0.0), (CONE, 0.1875))
     errors = np.concatenate([errors_of_fits(knees, slope, sigma_px, correlation_px) for knees, slope in bodies])
     assert abs(np.mean(errors)) < 0.2
-    assert np.std(errors) == pytest.approx(1 / 1.96, rel=off)
+    assert least / 1.96 < np.std(errors) < 1.15 / 1.96
     assert np.mean(np.abs(errors) <= 1) >= 0.88
