@@ -5,6 +5,7 @@ from typing import Any
 from app.wording import candidate_row, certainty, from_to, measured, open_ends, rests_on
 from rotrecon.answer import answer as answer_of
 from rotrecon.outcome import Fit
+from rotrecon.primitives import in_words
 from rotrecon.reconstruction import Reconstruction
 
 
@@ -23,7 +24,7 @@ def describe(answer: dict[str, Any]) -> str:
     if answer["kind"] is None:
         return "\n".join(["No result:", *(f"  {reason}" for reason in answer["reasons"])])
     lines = [
-        f"{'inside of a ' if answer['concave'] else ''}{answer['kind']}, {_diameter(answer)}",
+        f"{'inside of a ' if answer['concave'] else ''}{in_words(answer['kind'])}, {_diameter(answer)}",
         f"  {certainty(answer)}",
         *_geometry(answer),
         f"  {answer['arc_deg']:.0f} degrees of it are visible; its pixels lie {answer['rms_mm']:.2f} mm off it (RMS)",

@@ -9,6 +9,7 @@ from app.hints import hint, warning
 from app.session import Session, sentence
 from app.wording import candidate_row, certainty, from_to, measured, open_ends, rests_on
 from rotrecon.outcome import Fit
+from rotrecon.primitives import in_words
 from rotrecon.reconstruction import Reconstruction
 from rotrecon.tool_table import Tool
 from rotrecon.tools import NoTool, ToolProposal
@@ -48,7 +49,8 @@ def result_html(session: Session) -> str:
         f'<div class="rr-result{dim}" data-testid="result" data-revision="{revision}">'
         f'<div class="rr-head"><div class="rr-big" data-field="diameter_mm" data-value="{content["diameter_mm"]}">'
         f"&oslash; {measured(content['diameter_mm'], content['interval_mm'], ' mm')}</div>"
-        f'<div class="rr-kind" data-field="kind" data-value="{content["kind"]}">{content["kind"]}{concave}</div></div>'
+        f'<div class="rr-kind" data-field="kind" data-value="{content["kind"]}">'
+        f"{in_words(content['kind'])}{concave}</div></div>"
         f"{_certainty(content)}"
         f'<div class="rr-grid">{_fields(content)}</div>{_tool(result, content)}</div>'
     )

@@ -4,6 +4,8 @@ from collections.abc import Sequence
 from math import ceil, log10
 from typing import Any
 
+from rotrecon.primitives import in_words
+
 LOPSIDED = 0.2
 """Share by which the two halves of an interval may differ and still be said as one plus-minus, the larger of them."""
 MOST_DECIMALS = 3
@@ -54,7 +56,7 @@ def certainty(answer: dict[str, Any]) -> str:
 def candidate_name(candidate: dict[str, Any]) -> str:
     """A kind that was considered; of a cone how much it tapers."""
     angle = candidate["half_angle_deg"]
-    return candidate["kind"] if angle is None else f"{candidate['kind']} of {abs(angle):.1f}°"
+    return in_words(candidate["kind"]) if angle is None else f"{candidate['kind']} of {abs(angle):.1f}°"
 
 
 def candidate_row(candidate: dict[str, Any]) -> tuple[str, str, str]:

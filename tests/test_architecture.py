@@ -24,7 +24,7 @@ TURNED = [
 ]  # fmt: skip
 JUDGED = ["intervals", "recognition", "soundness", "judgement", "section_radii", "by_rays"]
 BY_RAYS = [*FITTED, *TURNED, *JUDGED]
-SHOWN = ["answer", "overlay", "mesh"]
+SHOWN = ["answer", "curves", "overlay", "mesh"]
 ORDER = [*GIVEN, *PROPOSED_AXIS, *SEGMENTED, *BY_SECTIONS, *BY_RAYS, "reconstruct", *SHOWN]
 """The flow of data; a stage may import only what stands before it."""
 STAGES = {

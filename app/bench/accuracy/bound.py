@@ -12,7 +12,7 @@ import numpy as np
 
 from app.bench.accuracy.clouds import CAMERA, FOCAL_BASELINE, Cloud, Pose
 from rotrecon.arrays import Bools, Floats, freeze
-from rotrecon.primitives import Primitive, Sphere, basis_across
+from rotrecon.primitives import Simple, Sphere, basis_across
 
 STEP = 1e-20
 """Of the complex step: its square vanishes beside 1, and nothing is subtracted."""
@@ -73,7 +73,7 @@ def cramer_rao(cloud: Cloud, known: Derivatives) -> Bound:
     return Bound(radius / float(solid.radius_at(middle)), half_angle / abs(solid.half_angle_rad))
 
 
-def near_depth(solid: Primitive, change: Numbers, rays: Floats) -> Numbers:
+def near_depth(solid: Simple, change: Numbers, rays: Floats) -> Numbers:
     """Depth (N,) at which rays meet the near side of a solid whose unknowns are changed."""
     if isinstance(solid, Sphere):
         center, radius = solid.center_m + change[:3], solid.radius_m + change[3]

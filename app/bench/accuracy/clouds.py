@@ -11,7 +11,7 @@ from rotrecon.arrays import Bools, Floats, freeze
 from rotrecon.camera import PinholeCamera
 from rotrecon.drawing import Drawing
 from rotrecon.frame import Frame
-from rotrecon.primitives import Primitive, Sphere
+from rotrecon.primitives import Simple, Sphere
 from rotrecon.simulation.ideal_drawing import perturb
 from rotrecon.simulation.simulate import Simulated, simulate
 from rotrecon.simulation.stereo_noise import StereoErrors, correlated_noise, stereo_depth
@@ -75,7 +75,7 @@ class Pose:
         freeze(self)
 
     @property
-    def solid(self) -> Primitive:
+    def solid(self) -> Simple:
         """The truth, in camera coordinates."""
         return self.simulated.solid_in_camera
 
@@ -87,7 +87,7 @@ class Cloud:
     object_name: str
     frame: Frame
     drawing: Drawing
-    truth: Primitive
+    truth: Simple
     """In camera coordinates."""
     surface: Bools
     """(H, W) pixels of the object's surface with a depth, as drawn and between the stroke's ends."""
@@ -188,7 +188,7 @@ def _points(simulated: Simulated) -> Floats:
     return CAMERA.unproject(np.stack([u, v], axis=-1), simulated.view.depth_m)
 
 
-def _from_middle(solid: Primitive, points_m: Floats) -> Floats:
+def _from_middle(solid: Simple, points_m: Floats) -> Floats:
     """Angle (N,) between the surface at points (N, 3) and the camera, which is the origin."""
     offset, toward = points_m - solid.center_m, -solid.center_m
     if not isinstance(solid, Sphere):

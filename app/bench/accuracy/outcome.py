@@ -9,7 +9,7 @@ from rotrecon.answer import answer
 from rotrecon.arrays import Floats
 from rotrecon.drawing import Drawing
 from rotrecon.outcome import Fit, Range
-from rotrecon.primitives import Primitive, Sphere
+from rotrecon.primitives import Primitive, Simple, Sphere
 from rotrecon.reconstruct import reconstruct
 from rotrecon.reconstruction import Reconstruction
 from rotrecon.settings import Method, Settings
@@ -74,7 +74,7 @@ def radius_at(solid: Primitive, point_m: Floats) -> float:
     return float(solid.radius_at((point_m - solid.center_m) @ solid.direction))
 
 
-def true_half_angle(truth: Primitive) -> float:
+def true_half_angle(truth: Simple) -> float:
     """NaN but for a cone."""
     return truth.half_angle_rad if truth.kind == "cone" and not isinstance(truth, Sphere) else np.nan
 

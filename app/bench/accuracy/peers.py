@@ -15,7 +15,7 @@ from scipy.optimize import least_squares
 from app.bench.accuracy.clouds import FOCAL_BASELINE, Cloud
 from app.bench.accuracy.outcome import Outcome, radius_at, true_half_angle
 from rotrecon.arrays import Bools, Floats
-from rotrecon.primitives import Frustum, Primitive, Sphere, basis_across
+from rotrecon.primitives import Frustum, Simple, Sphere, basis_across
 
 RANSAC_POINTS = 1000
 """Points that the packages' loops of random samples are given: they are written in Python, and slow."""
@@ -35,7 +35,7 @@ def orthogonal_least_squares(cloud: Cloud) -> Outcome:
     points, truth = _points(cloud, cloud.own), cloud.truth
     count = 4 if isinstance(truth, Sphere) else 6 if truth.kind == "cone" else 5
 
-    def solid(change: Floats) -> Primitive:
+    def solid(change: Floats) -> Simple:
         return _changed(truth, change)
 
     found = least_squares(lambda change: solid(change).distance(points), np.zeros(count), x_scale="jac")
@@ -123,7 +123,7 @@ def _circle_radius(across: Floats, cloud: Cloud) -> float:
     return float(model.radius) if model else np.nan
 
 
-def _changed(truth: Primitive, change: Floats) -> Primitive:
+def _changed(truth: Simple, change: Floats) -> Simple:
     """The truth with its unknowns changed: centre and radius, or axis (2 + 2), radius and slope."""
     if isinstance(truth, Sphere):
         return Sphere(truth.center_m + change[:3], truth.direction, truth.radius_m + float(change[3]))
@@ -139,13 +139,13 @@ def _changed(truth: Primitive, change: Floats) -> Primitive:
     )
 
 
-def _outcome(solid: Primitive, cloud: Cloud) -> Outcome:
+def _outcome(solid: Simple, cloud: Cloud) -> Outcome:
     """A solid of the same kind beside the truth."""
     radius = radius_at(solid, cloud.place_m) / radius_at(cloud.truth, cloud.place_m) - 1
     return Outcome(radius, half_angle=_half_angle(solid) / true_half_angle(cloud.truth) - 1, kind=solid.kind)
 
 
-def _half_angle(solid: Primitive) -> float:
+def _half_angle(solid: Simple) -> float:
     return np.nan if isinstance(solid, Sphere) else solid.half_angle_rad
 
 
