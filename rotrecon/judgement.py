@@ -7,6 +7,7 @@ from rotrecon.circles import SectionState
 from rotrecon.hypotheses import Scene
 from rotrecon.intervals import radius_sigma
 from rotrecon.outcome import DRAW_CLOSE, FailureReason, FitFailure, Intervals
+from rotrecon.primitives import in_words
 from rotrecon.robust import Ranked
 from rotrecon.settings import Settings
 from rotrecon.soundness import Soundness
@@ -61,8 +62,8 @@ def failure_of(chosen: Ranked, soundness: Soundness, scene: Scene, settings: Set
         advice = "the object does not lie along the stroke; draw the axis along it, or leave it to the program"
         return FitFailure(FailureReason.OFF_AXIS, advice)
     if soundness.inlier_share < settings.least_inlier_share or soundness.roughness > settings.rms_over_radius:
-        share = f"{100 * soundness.inlier_share:.0f} % of the depths agree"
-        advice = f"no body of revolution explains what is drawn: with the best {chosen.shape} {share}; {DRAW_CLOSE}"
+        share = f"with the best {in_words(chosen.shape)} {100 * soundness.inlier_share:.0f} % of the depths agree"
+        advice = f"no body of revolution explains what is drawn: {share}; {DRAW_CLOSE}"
         return FitFailure(FailureReason.NOT_ROUND, advice)
     return None
 
@@ -87,12 +88,13 @@ def doubts_of(
         )
     if soundness.inlier_share < settings.doubtful_inlier_share:
         doubts.append(
-            f"only {100 * soundness.inlier_share:.0f} % of the depths agree with the {chosen.shape}; "
+            f"only {100 * soundness.inlier_share:.0f} % of the depths agree with the {in_words(chosen.shape)}; "
             "draw the area closer round one object"
         )
     if soundness.pattern > settings.doubtful_pattern:
         doubts.append(
-            f"what is seen is not as round as a {chosen.shape}, flats or edges remain; draw round one round part"
+            f"what is seen is not as round as a {in_words(chosen.shape)}, flats or edges remain; "
+            "draw round one round part"
         )
     one_side, both_sides = max(soundness.goes_on), min(soundness.goes_on)
     if one_side > settings.doubtful_goes_on or both_sides > settings.doubtful_goes_on / 2:
