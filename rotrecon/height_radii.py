@@ -1,11 +1,11 @@
 """The radius of each height about an axis, from the depths and the outline at that height alone."""
 
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 
 import numpy as np
 
 from rotrecon.arrays import Bools, Floats, Indices, freeze
-from rotrecon.fitting import robust_scale, tukey
+from rotrecon.fitting import TO_SIGMA, robust_scale, tukey
 from rotrecon.looks import FAR, FEWEST_PIXELS, Grazes, Looks, medians
 
 ROUNDS = 3
@@ -47,6 +47,12 @@ class Sums:
             own_pull=_totals(weighted[-1] * residual, place, count),
         )
 
+    def times(self, share: float) -> "Sums":
+        """A share of these."""
+        return Sums(
+            share * self.axis, share * self.axis_pull, share * self.mixed, share * self.own, share * self.own_pull
+        )
+
     def plus(self, other: "Sums") -> "Sums":
         """These and others."""
         return Sums(
@@ -72,7 +78,7 @@ class HeightRadii:
     sound: Bools
     """(n,) which heights have one radius that most of their depths agree on: an edge or a flat end has none."""
     sums: Sums
-    """Of the sound heights, the outline's with the depths'."""
+    """Of the sound heights."""
     residual: Floats
     """(N,) of the depths, in standard deviations of the noise; far off at rays that have no say."""
     sigma: float
@@ -82,36 +88,41 @@ class HeightRadii:
         freeze(self)
 
 
-def height_radii(looks: Looks, grazes: Grazes | None, independent: float) -> HeightRadii:
-    """The radii that explain the depths, and the outline, at each height best, by the redescending loss.
-
-    `independent` is the share of the depths that err independently, against which the outline is weighed.
-    """
-    change, every = medians(looks.offset, looks.place, looks.count, FEWEST_PIXELS), np.ones(looks.count, dtype=np.bool_)
+def height_radii(looks: Looks) -> HeightRadii:
+    """The radii that explain the depths at each height best, by the redescending loss."""
+    change = medians(looks.offset, looks.place, looks.count, FEWEST_PIXELS)
     for _ in range(ROUNDS):
-        sums, _, _ = _summed(looks, grazes, change, independent, every)
-        change = change + sums.own_pull / np.maximum(sums.own, 1e-300)
-    residual, _ = looks.rows(change)
+        residual, columns = looks.rows(change)
+        weighted = tukey(residual / _sigma(residual))[1] * columns[-1]
+        info = _totals(weighted * columns[-1], looks.place, looks.count)
+        change = change + _totals(weighted * residual, looks.place, looks.count) / np.maximum(info, 1e-300)
+    residual, columns = looks.rows(change)
     sigma = _sigma(residual)
     agree, asked = np.abs(residual) < AGREES * sigma, residual < FAR
     agreeing, of = (np.bincount(looks.place[which], minlength=looks.count) for which in (agree, asked))
     sound = np.isfinite(change) & (agreeing >= FEWEST_PIXELS) & (agreeing > SOUND_SHARE * of)
-    return HeightRadii(change, sound, *_summed(looks, grazes, change, independent, sound))
-
-
-def _summed(
-    looks: Looks, grazes: Grazes | None, change_m: Floats, independent: float, sound: Bools
-) -> tuple[Sums, Floats, float]:
-    """Normal equations of the sound (n,) heights, residuals (N,) of depths and their sigma, at changed radii (n,)."""
-    residual, columns = looks.rows(change_m)
-    sigma = _sigma(residual)
-    weight = tukey(residual / sigma)[1] * sound[looks.place] * independent / sigma**2
+    weight = tukey(residual / sigma)[1] * sound[looks.place] / sigma**2
     sums = Sums.of(residual, columns, weight, looks.place, looks.count)
+    return HeightRadii(change, sound, sums, residual, sigma)
+
+
+def with_outline(found: HeightRadii, independent: float, grazes: Grazes | None) -> HeightRadii:
+    """The same with so large a share of the depths independent, and with an outline.
+
+    Which heights are sound, and what the noise is, the depths say alone: about an axis that is off the two contradict.
+    """
+    sums = found.sums.times(independent)
     if grazes is not None:
-        off, columns = grazes.rows(change_m)
-        weight = tukey(off)[1] * sound[grazes.place]
-        sums = sums.plus(Sums.of(off, columns, weight, grazes.place, looks.count))
-    return sums, residual, sigma
+        sums = sums.plus(_of_outline(grazes, found.change_m, found.sound))
+    return replace(found, sums=sums, change_m=found.change_m + sums.own_pull / np.maximum(sums.own, 1e-300))
+
+
+def _of_outline(grazes: Grazes, change_m: Floats, sound: Bools) -> Sums:
+    """Normal equations of an outline; while it is far from where it belongs, it is believed as little as it fits."""
+    off, columns = grazes.rows(change_m)
+    scale = max(TO_SIGMA * float(np.median(np.abs(off))), 1.0) if len(off) else 1.0
+    weight = tukey(off / scale)[1] * sound[grazes.place] / scale**2
+    return Sums.of(off, columns, weight, grazes.place, len(sound))
 
 
 def _sigma(residual: Floats) -> float:

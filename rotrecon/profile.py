@@ -6,7 +6,7 @@ import numpy as np
 
 from rotrecon.arrays import Bools, Floats, freeze
 from rotrecon.correlation import Likeness
-from rotrecon.height_radii import height_radii
+from rotrecon.height_radii import height_radii, with_outline
 from rotrecon.looks import grazes_at, looks_at
 from rotrecon.patch import Patch
 from rotrecon.ray_fit import RayFit
@@ -52,11 +52,10 @@ def profile_of(fit: RayFit, patch: Patch, heights_m: Floats) -> Profile:
     if not isinstance(fit.surface, Lateral):
         raise TypeError("a ball has no axis along which it has a profile")
     looks = looks_at(fit.surface, patch, heights_m, fit.sight.guard)
-    grazes = grazes_at(looks.surface, fit.outlines, heights_m)
     pitch_m = _pitch(looks.surface, patch, heights_m)
     rows = float(np.median(np.diff(heights_m))) / pitch_m
     together = _alike(fit.likeness, rows, len(looks.pixels) / len(heights_m) / rows)
-    found = height_radii(looks, grazes, 1.0 / together)
+    found = with_outline(height_radii(looks), 1.0 / together, grazes_at(looks.surface, fit.outlines, heights_m))
     info = np.where(found.sound, found.sums.own, np.nan)
     lever = found.sums.mixed / info
     axis = fit.covariance[:AXIS_PARAMETERS, :AXIS_PARAMETERS]

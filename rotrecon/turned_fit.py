@@ -8,7 +8,7 @@ from rotrecon.arrays import Bools, Floats, Indices, freeze
 from rotrecon.correlation import Likeness, likeness_of
 from rotrecon.extent import Extent
 from rotrecon.fitting import Measurement, Outline, refine, tukey
-from rotrecon.height_radii import HeightRadii, height_radii
+from rotrecon.height_radii import HeightRadii, height_radii, with_outline
 from rotrecon.looks import Looks, grazes_at, looks_at
 from rotrecon.patch import Patch
 from rotrecon.ray_fit import INLIER_SIGMA, OVERSAMPLED, WHOLE, RayFit, Sight, depths_of, spread
@@ -34,7 +34,6 @@ WINDOW_REACH = 1.0
 """Of a window over the limb, over the length at which errors are alike."""
 LEAST_GUARD = 0.65
 """Within this share of the radius depth is taken as it is."""
-UNALIKE = Likeness(0.0, 0.0)
 SMOOTHINGS, ITERATIONS = 4, 3
 FIRST_SHARE = 0.02
 """The prior's first scale over the radius."""
@@ -89,11 +88,11 @@ def fit_turned(patch: Patch, edge: Ridge, start: RayFit | None = None, extent: E
     free = np.ones(AXIS_PARAMETERS, dtype=np.bool_) if start is None else start.free[:AXIS_PARAMETERS]
     task = _Task(patch, free, () if start is None else start.outlines)
     surface = turned_start(patch, edge, lateral, ~free[2:], extent, task.outlines, KNOTS)
-    axis = None if surface is None else _round(surface, task, WHOLE, UNALIKE, SCOUTS)
+    axis = None if surface is None else _round(surface, task, WHOLE, SCOUTS)
     for most in (*[SCOUTS] * ROUNDS, None):
         if axis is None:
             return None
-        axis = _round(axis.surface, task, _guard(axis, patch), axis.likeness, most)
+        axis = _round(axis.surface, task, _guard(axis, patch), most)
     return None if axis is None else _smoothed(axis, task)
 
 
@@ -106,12 +105,14 @@ def _guard(axis: _Axis, patch: Patch) -> float:
     return max(1.0 - WINDOW_REACH * axis.likeness.length_px / radius_px, LEAST_GUARD)
 
 
-def _round(surface: Turned, task: _Task, guard: float, likeness: Likeness, most: int | None) -> _Axis | None:
+def _round(surface: Turned, task: _Task, guard: float, most: int | None) -> _Axis | None:
     """A step of Gauss and Newton for the axis and all radii together; None when there are too few depths."""
     heights = np.linspace(surface.low_m, surface.high_m, HEIGHTS)
     looks = looks_at(surface, task.patch, heights, guard, most)
-    grazes = grazes_at(surface, task.outlines, heights)
-    found = height_radii(looks, grazes, min(likeness.independent_share / looks.share, 1.0))
+    found = height_radii(looks)
+    likeness = _likeness(looks, found, task.patch)
+    independent = min(likeness.independent_share / looks.share, 1.0)
+    found = with_outline(found, independent, grazes_at(surface, task.outlines, heights))
     known = found.sound
     if known.sum() < FEWEST_HEIGHTS:
         return None
@@ -126,7 +127,6 @@ def _round(surface: Turned, task: _Task, guard: float, likeness: Likeness, most:
     radius = (surface.curve(heights)[0] + found.change_m)[known] - step @ lever
     through = turned_from(surface, heights[known], radius, KNOTS)
     radii = Radii(heights[known], radius, 1.0 / np.sqrt(own), lever)
-    likeness = _likeness(looks, found, task.patch)
     stepped = through.stepped(np.concatenate([step, np.zeros(KNOTS)]))
     return _Axis(stepped, radii, guard, looks.pixels, found.sigma, likeness, covariance)
 

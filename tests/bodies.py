@@ -4,17 +4,21 @@ from dataclasses import dataclass
 
 import numpy as np
 
-from rotrecon.arrays import Floats
+from rotrecon.arrays import Bools, Cloud, Floats
 from rotrecon.camera import PinholeCamera
-from rotrecon.drawing import AreaOfInterest, Drawing, ObjectAxis, cut_sections
+from rotrecon.correlation import Likeness
+from rotrecon.drawing import AreaOfInterest, CrossSegments, Drawing, ObjectAxis, cut_sections
+from rotrecon.fitting import Outline
 from rotrecon.frame import Frame
 from rotrecon.patch import Patch, patch_of, without_speckle
 from rotrecon.primitives import Frustum, Primitive, basis_across
+from rotrecon.ray_fit import RayFit, Sight
 from rotrecon.segmentation import segment
 from rotrecon.settings import Settings
 from rotrecon.simulation.raycast import first_hit
 from rotrecon.simulation.stereo_noise import correlated_noise
-from rotrecon.surfaces import Lateral, turn_of
+from rotrecon.starts import Ridge, ridge
+from rotrecon.surfaces import Ball, Lateral, turn_of
 
 CAMERA = PinholeCamera(640, 480, np.array([[700.0, 0, 319.5], [0, 700.0, 239.5], [0, 0, 1]]))
 BASELINE_M = 0.1
@@ -116,7 +120,41 @@ def drawing_round(body: Body, low_m: float, high_m: float, margin_px: float = 8.
 
 def patch_seen(frame: Frame, drawing: Drawing) -> Patch:
     """The patch of a drawing, segmented as by the paper."""
+    segments, kept, _ = _segmented(frame, drawing)
+    return patch_of(frame, drawing.area, segments, kept)
+
+
+def ridge_seen(frame: Frame, drawing: Drawing) -> Ridge:
+    """The ridge of what is segmented in a drawing."""
+    segments, kept, depth_m = _segmented(frame, drawing)
+    return ridge(frame.camera, depth_m.astype(np.float64), segments, kept & np.isfinite(depth_m))
+
+
+def _segmented(frame: Frame, drawing: Drawing) -> tuple[CrossSegments, Bools, Cloud]:
     segments = cut_sections(drawing.area, drawing.stroke, (frame.camera.width, frame.camera.height))
     clean = without_speckle(frame.depth_m).reshape(-1)[segments.pixel]
     usable = segments.inside & np.isfinite(clean)
-    return patch_of(frame, drawing.area, segments, segment(clean, usable, segments.inside, Settings()).kept)
+    return segments, segment(clean, usable, segments.inside, Settings()).kept, clean
+
+
+def as_fit(
+    surface: Lateral | Ball, outlines: tuple[tuple[Outline, float], ...] = (), guard: float = 1e3, sigma: float = 1.0
+) -> RayFit:
+    """A surface as if it had been fitted, exactly and to white noise."""
+    count = len(surface.units(1.0))
+    free, nothing = np.ones(count, dtype=np.bool_), np.zeros(0)
+    pixels, unalike = np.zeros(0, dtype=np.int32), Likeness(0.0, 0.0)
+    return RayFit(
+        surface, Sight(guard=guard), outlines, free, pixels, nothing, sigma, unalike, np.zeros((count, count))
+    )
+
+
+@cache
+def seen(
+    knees: tuple[Knee, ...], seed: int, sigma_px: float = 0.25, correlation_px: float = 0.0
+) -> tuple[Body, Patch, Ridge]:
+    """A body as a stroke along all of it sees it, and what its segmented pixels show."""
+    body = body_at(knees, seed, most_tilt=0.5)
+    frame = noisy_frame(depth_of(body.solids()), seed, sigma_px, correlation_px)
+    drawing = drawing_round(body, body.low_m - 0.03, body.high_m + 0.03)
+    return body, patch_seen(frame, drawing), ridge_seen(frame, drawing)
