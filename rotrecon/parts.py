@@ -20,9 +20,9 @@ CAUTION = 8.0
 """Twice the logarithm of the odds, 1 to 55, against a further part or number before anything is seen."""
 FEWEST = 5
 """Heights in a part: fewer may be the edge between two."""
-MOST_SKIPPED, SKIP_COST = 4, 6.0
+MOST_SKIPPED, SKIP_COST = 4, 10.0
 """Heights that may be left out where a part begins or the last one ends, at an edge that pixels straddle; and the price
-of each, that of 2.4 standard deviations."""
+of each, that of 3.2 standard deviations."""
 SMOOTHED = 2
 """Heights to each side, of whose median a stray one is no part."""
 STRAY = 5.0

@@ -1,6 +1,7 @@
 """Bodies of several solids on one axis before a wall, as a noisy stereo camera would see them."""
 
 from dataclasses import dataclass
+from functools import cache
 
 import numpy as np
 
@@ -35,6 +36,15 @@ CONE: tuple[Knee, ...] = ((-0.08, 0.03), (0.08, 0.06))
 _HEIGHT = np.linspace(-0.1, 0.1, 41)
 VASE: tuple[Knee, ...] = tuple((float(h), 0.035 + 0.012 * float(np.cos(h / 0.1 * 2.4 + 0.5))) for h in _HEIGHT)
 
+BODIES: dict[str, tuple[Knee, ...]] = {
+    "bottle": BOTTLE,
+    "mug": MUG_WITH_FOOT,
+    "flange": FLANGED_PIPE,
+    "vase": VASE,
+    "cylinder": CYLINDER,
+    "cone": CONE,
+}
+
 
 @dataclass(frozen=True, eq=False)
 class Body:
@@ -62,6 +72,11 @@ class Body:
         height, radius = np.array(self.knees).T
         # at a step the two radii share a height
         return np.interp(height_m, height + 1e-9 * np.arange(len(height)), radius)
+
+    def on(self, surface: Lateral, height_m: Floats) -> Floats:
+        """Heights along this axis of heights along that of a surface, which may point the other way."""
+        sense = np.sign(surface.direction @ self.direction)
+        return (surface.center_m - self.center_m) @ self.direction + sense * height_m
 
     @property
     def low_m(self) -> float:

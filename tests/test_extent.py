@@ -128,3 +128,15 @@ def test_a_turned_surface_is_followed_through_all_of_an_object(seed):
     assert found.high_m == pytest.approx(body.high_m, abs=0.003)
     assert not found.low_open
     assert not found.high_open
+
+
+def test_a_strap_of_a_pixel_does_not_end_the_support():
+    body = Body(CYLINDER, np.array([0.0, 0.0, 0.7]), np.array([0.8, 0.6, 0.0]))
+    patch, surface = seen(body, 5, 0.03), body.lateral()
+    height = surface.heights((patch.rays * surface.trace(patch.rays).depth_m).T)
+    strap = np.abs(height - 0.05) < 0.0006
+    found = extent(surface, replace(patch, depth_m=np.where(strap, patch.depth_m - 0.05, patch.depth_m)))
+    assert found.high_m == pytest.approx(body.high_m, abs=0.001)
+    broad = np.abs(height - 0.05) < 0.004
+    cut = extent(surface, replace(patch, depth_m=np.where(broad, patch.depth_m - 0.05, patch.depth_m)))
+    assert cut.high_m == pytest.approx(0.046, abs=0.001)

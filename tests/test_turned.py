@@ -182,3 +182,22 @@ def test_the_priors_scale_is_that_of_the_bends(bend_m):
             scale_m = next_scale(bent, information, scale_m, np.arange(4 + KNOTS) >= 4)
         found.append(scale_m)
     assert np.sqrt(np.mean(np.square(found))) == pytest.approx(bend_m, rel=0.2)
+
+
+def test_the_priors_scale_is_not_less_for_noise_that_it_smooths():
+    bend_m, sigma_m, found = 1e-3, 1.5e-3, []
+    surface = turned(CYLINDER, 0)
+    difference = second_differences(KNOTS)
+    for seed in range(60):
+        rng = np.random.default_rng(seed)
+        curve = np.concatenate([[0.0, 0.0], np.cumsum(np.cumsum(rng.normal(0, bend_m, KNOTS - 2)))])
+        seen = curve + rng.normal(0, sigma_m, KNOTS)
+        scale_m = 0.01
+        for _ in range(40):
+            information = np.zeros((4 + KNOTS, 4 + KNOTS))
+            information[4:, 4:] = np.eye(KNOTS) / sigma_m**2 + difference.T @ difference / scale_m**2
+            smooth = np.linalg.solve(information[4:, 4:], seen / sigma_m**2)
+            bent = surface.stepped(np.concatenate([np.zeros(4), smooth]))
+            scale_m = next_scale(bent, information, scale_m, np.arange(4 + KNOTS) >= 4)
+        found.append(scale_m)
+    assert np.sqrt(np.mean(np.square(found))) == pytest.approx(bend_m, rel=0.25)
