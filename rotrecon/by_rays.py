@@ -6,26 +6,26 @@ import numpy as np
 
 from rotrecon.arrays import Cloud, Floats, freeze
 from rotrecon.axis import Axis, FittedAxis
-from rotrecon.axis_direction import held_direction
 from rotrecon.extent import Extent, extent_of
 from rotrecon.frame import StereoNoise
-from rotrecon.hypotheses import Held, Scene, scene_of
 from rotrecon.intervals import radius_sigma
 from rotrecon.judgement import doubts_of, failure_of, too_little
 from rotrecon.outcome import Evidence, FailureReason, Fit, FitFailure, PartOf, Range
-from rotrecon.parts import Part
-from rotrecon.patch import Patch, patch_of
 from rotrecon.primitives import Primitive
+from rotrecon.rays.hypotheses import Held, Scene, scene_of
+from rotrecon.rays.patch import Patch, patch_of
+from rotrecon.rays.robust import Ranked, rank
+from rotrecon.rays.starts import robust_line
+from rotrecon.rays.surfaces import Lateral
 from rotrecon.recognition import candidates_of, chosen_of, intervals_of, is_possible, solid_of
 from rotrecon.reconstruction import Cut, Reconstruction
-from rotrecon.robust import Ranked, rank
 from rotrecon.section_radii import SectionRadii, section_radii
 from rotrecon.settings import Settings
 from rotrecon.soundness import Soundness, soundness_of
-from rotrecon.starts import robust_line
-from rotrecon.surfaces import Lateral
+from rotrecon.stroke.axis_direction import held_direction
 from rotrecon.tools import NoTool, Reading, propose_tool
-from rotrecon.turned_fit import fit_turned
+from rotrecon.turned.parts import Part
+from rotrecon.turned.turned_fit import fit_turned
 
 
 @dataclass(frozen=True, eq=False)

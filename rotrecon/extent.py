@@ -6,9 +6,9 @@ from typing import NamedTuple
 import numpy as np
 
 from rotrecon.arrays import Floats
-from rotrecon.patch import Patch
-from rotrecon.surfaces import Lateral
-from rotrecon.turned import radius_at
+from rotrecon.rays.patch import Patch
+from rotrecon.rays.surfaces import Lateral
+from rotrecon.turned.turned import radius_at
 
 INNER = 0.8
 """Share of the radius beside the axis within which depth is asked: farther out matching smears it."""

@@ -4,15 +4,15 @@ import numpy as np
 
 from rotrecon.arrays import Bytes
 from rotrecon.circles import SectionState
-from rotrecon.hypotheses import Scene
 from rotrecon.intervals import radius_sigma
 from rotrecon.outcome import DRAW_CLOSE, FailureReason, FitFailure, Intervals
 from rotrecon.primitives import in_words
-from rotrecon.robust import Ranked
+from rotrecon.rays.hypotheses import Scene
+from rotrecon.rays.robust import Ranked
+from rotrecon.rays.starts import robust_line
+from rotrecon.rays.surfaces import Lateral
 from rotrecon.settings import Settings
 from rotrecon.soundness import Soundness
-from rotrecon.starts import robust_line
-from rotrecon.surfaces import Lateral
 
 
 def too_little(scene: Scene, reachable: bool, settings: Settings) -> FitFailure | None:

@@ -5,11 +5,11 @@ import numpy as np
 from rotrecon.intervals import ball_intervals, lateral_intervals, turned_intervals
 from rotrecon.outcome import Candidate, Intervals, Range
 from rotrecon.primitives import Frustum, Kind, Primitive, Revolution, Sphere
-from rotrecon.radii import SHAPE_OF_KIND
-from rotrecon.robust import Ranked
+from rotrecon.rays.robust import Ranked
+from rotrecon.rays.surfaces import Ball, Lateral
+from rotrecon.sections.radii import SHAPE_OF_KIND
 from rotrecon.settings import Settings
-from rotrecon.surfaces import Ball, Lateral
-from rotrecon.turned import Turned
+from rotrecon.turned.turned import Turned
 
 PROFILE_POINTS = 65
 """Heights at which a smooth profile is told: an odd number, one of them the middle."""

@@ -6,19 +6,19 @@ import numpy as np
 from threadpoolctl import ThreadpoolController  # pyright: ignore[reportMissingTypeStubs]
 
 from rotrecon.arrays import Bools, Cloud, blocks
-from rotrecon.axis_proposal import propose_axis
 from rotrecon.by_rays import by_rays
-from rotrecon.by_sections import by_sections
 from rotrecon.circles import base_points
 from rotrecon.drawing import CrossSegments, Drawing, DrawingError, cut_sections
 from rotrecon.frame import Frame
 from rotrecon.outcome import FitFailure
-from rotrecon.patch import without_speckle
+from rotrecon.rays.patch import without_speckle
 from rotrecon.reconstruction import Reconstruction
-from rotrecon.section_cuts import cut
-from rotrecon.section_fit import why_no_axis
+from rotrecon.sections.by_sections import by_sections
+from rotrecon.sections.section_cuts import cut
+from rotrecon.sections.section_fit import why_no_axis
 from rotrecon.segmentation import segment
 from rotrecon.settings import Settings
+from rotrecon.stroke.axis_proposal import propose_axis
 from rotrecon.workspace import available
 
 THREADS = ThreadpoolController()

@@ -7,14 +7,14 @@ import numpy as np
 from rotrecon.arrays import Bools, Cloud, Floats, Indices, freeze
 from rotrecon.axis import Axis, SpaceSections, cut_in_space
 from rotrecon.circles import SectionCircles, SectionState, circumcircles
-from rotrecon.fitting import TO_SIGMA
-from rotrecon.parts import Part, parts_of
-from rotrecon.patch import Patch
-from rotrecon.profile import profile_of
-from rotrecon.ray_fit import RayFit
+from rotrecon.rays.fitting import TO_SIGMA
+from rotrecon.rays.patch import Patch
+from rotrecon.rays.ray_fit import RayFit
+from rotrecon.rays.surfaces import Ball, Surface
 from rotrecon.settings import Settings
-from rotrecon.surfaces import Ball, Surface
-from rotrecon.turned import Turned
+from rotrecon.turned.parts import Part, parts_of
+from rotrecon.turned.profile import profile_of
+from rotrecon.turned.turned import Turned
 
 INNER = 0.85
 """Share of the radius within which depths say how far out a section's surface is; farther out they are flattened."""

@@ -5,10 +5,10 @@ from dataclasses import dataclass
 import numpy as np
 
 from rotrecon.arrays import Bools, Floats, freeze
-from rotrecon.limbs import limbs_of
-from rotrecon.patch import Patch
-from rotrecon.ray_fit import RayFit
-from rotrecon.surfaces import Lateral
+from rotrecon.rays.limbs import limbs_of
+from rotrecon.rays.patch import Patch
+from rotrecon.rays.ray_fit import RayFit
+from rotrecon.rays.surfaces import Lateral
 
 AGREES_SIGMA = 4.0
 """Residuals within which a depth agrees with the surface."""

@@ -7,19 +7,19 @@ import numpy as np
 
 from rotrecon.arrays import Bools, Cloud, Floats
 from rotrecon.camera import PinholeCamera
-from rotrecon.correlation import Likeness
 from rotrecon.drawing import AreaOfInterest, CrossSegments, Drawing, ObjectAxis, cut_sections
-from rotrecon.fitting import Outline
 from rotrecon.frame import Frame
-from rotrecon.patch import Patch, patch_of, without_speckle
 from rotrecon.primitives import Frustum, Primitive, basis_across
-from rotrecon.ray_fit import RayFit, Sight
+from rotrecon.rays.correlation import Likeness
+from rotrecon.rays.fitting import Outline
+from rotrecon.rays.patch import Patch, patch_of, without_speckle
+from rotrecon.rays.ray_fit import RayFit, Sight
+from rotrecon.rays.starts import Ridge, ridge
+from rotrecon.rays.surfaces import Ball, Lateral, turn_of
 from rotrecon.segmentation import segment
 from rotrecon.settings import Settings
 from rotrecon.simulation.raycast import first_hit
 from rotrecon.simulation.stereo_noise import correlated_noise
-from rotrecon.starts import Ridge, ridge
-from rotrecon.surfaces import Ball, Lateral, turn_of
 
 CAMERA = PinholeCamera(640, 480, np.array([[700.0, 0, 319.5], [0, 700.0, 239.5], [0, 0, 1]]))
 BASELINE_M = 0.1

@@ -7,34 +7,48 @@ import pytest
 
 ROOT = Path(__file__).parents[1]
 FORBIDDEN = {"app", "viser", "fastapi", "starlette", "uvicorn", "typer"}
-GIVEN = [
-    "errors", "files", "arrays", "camera", "primitives", "workspace", "tool_table", "settings", "frame", "drawing",
-    "outcome", "noise",
-]  # fmt: skip
-PROPOSED_AXIS = ["planes", "foreground", "stroke_ends", "mirror", "hollow", "axis_proposal", "axis_direction"]
-SEGMENTED = ["segmentation", "circles", "axis", "tools", "reconstruction", "section_cuts"]
-BY_SECTIONS = ["radii", "section_fit", "by_sections"]
-FITTED = [
-    "surfaces", "patch", "correlation", "fitting", "ray_fit", "coarse_fit", "starts", "edge_lines", "edge_steps",
-    "edges", "limbs", "guard", "hypotheses", "robust",
-]  # fmt: skip
-TURNED = [
-    "lines", "turned", "extent", "looks", "height_radii", "profile", "parts", "smoothness", "turned_start",
-    "turned_fit",
-]  # fmt: skip
-JUDGED = ["intervals", "recognition", "soundness", "judgement", "section_radii", "by_rays"]
+GIVEN = """
+    errors files arrays camera primitives workspace tool_table settings frame drawing outcome noise
+""".split()
+PROPOSED_AXIS = """
+    stroke.planes stroke.foreground stroke.stroke_ends stroke.mirror stroke.hollow stroke.axis_proposal
+    stroke.axis_direction
+""".split()
+SEGMENTED = """
+    segmentation circles axis tools reconstruction sections.section_cuts
+""".split()
+BY_SECTIONS = """
+    sections.radii sections.section_fit sections.by_sections
+""".split()
+FITTED = """
+    rays.surfaces rays.patch rays.correlation rays.fitting rays.ray_fit rays.coarse_fit rays.starts
+    edges.edge_lines edges.edge_steps edges.edges rays.limbs rays.guard rays.hypotheses rays.robust
+""".split()
+TURNED = """
+    rays.lines turned.turned extent turned.looks turned.height_radii turned.profile turned.parts
+    turned.smoothness turned.turned_start turned.turned_fit
+""".split()
+JUDGED = """
+    intervals recognition soundness judgement section_radii by_rays
+""".split()
 BY_RAYS = [*FITTED, *TURNED, *JUDGED]
-SHOWN = ["answer", "curves", "overlay", "mesh"]
+SHOWN = """
+    answer curves overlay mesh
+""".split()
 ORDER = [*GIVEN, *PROPOSED_AXIS, *SEGMENTED, *BY_SECTIONS, *BY_RAYS, "reconstruct", *SHOWN]
 """The flow of data; a stage may import only what stands before it."""
-STAGES = {
-    "workspace", "drawing", "segmentation", "circles", "radii", "noise", "planes", "surfaces", "correlation",
-    "edge_lines", "starts", "tools",
-}  # fmt: skip
+STAGES = set(
+    """
+    workspace drawing segmentation circles sections.radii noise stroke.planes rays.surfaces rays.correlation
+    edges.edge_lines rays.starts tools
+""".split()
+)
 """They know the types, and not each other."""
-TYPES = {
-    "arrays", "camera", "primitives", "settings", "frame", "drawing", "outcome", "tool_table", "surfaces", "patch",
-}  # fmt: skip
+TYPES = set(
+    """
+    arrays camera primitives settings frame drawing outcome tool_table rays.surfaces rays.patch
+""".split()
+)
 
 
 def imports(path: Path) -> set[str]:
@@ -48,7 +62,11 @@ def imports(path: Path) -> set[str]:
 
 
 def local(path: Path) -> set[str]:
-    return {name.split(".")[1] for name in imports(path) if name.startswith("rotrecon.")}
+    return {name.removeprefix("rotrecon.") for name in imports(path) if name.startswith("rotrecon.")}
+
+
+def source(name: str) -> Path:
+    return (ROOT / "rotrecon").joinpath(*name.split(".")).with_suffix(".py")
 
 
 @pytest.mark.parametrize("path", sorted((ROOT / "rotrecon").rglob("*.py")), ids=lambda path: path.name)
@@ -57,29 +75,35 @@ def test_library_knows_neither_the_app_nor_a_web_framework(path):
 
 
 def test_every_module_has_its_place_in_the_flow():
-    assert sorted(ORDER) == sorted(path.stem for path in (ROOT / "rotrecon").glob("[!_]*.py"))
+    library = ROOT / "rotrecon"
+    modules = [
+        path.relative_to(library)
+        for path in library.rglob("[!_]*.py")
+        if path.relative_to(library).parts[0] not in ("scene", "simulation")
+    ]
+    assert sorted(ORDER) == sorted(".".join(path.with_suffix("").parts) for path in modules)
 
 
 def test_the_two_methods_share_what_is_segmented_and_not_their_own_stages():
     for name in BY_RAYS:
-        assert not local(ROOT / "rotrecon" / f"{name}.py") & (set(BY_SECTIONS) - {"radii"}), name
+        assert not local(source(name)) & (set(BY_SECTIONS) - {"sections.radii"}), name
     for name in BY_SECTIONS:
-        assert not local(ROOT / "rotrecon" / f"{name}.py") & set(BY_RAYS), name
+        assert not local(source(name)) & set(BY_RAYS), name
 
 
 @pytest.mark.parametrize("name", ORDER)
 def test_measuring_knows_neither_scene_folders_nor_simulations(name):
-    assert not local(ROOT / "rotrecon" / f"{name}.py") & {"scene", "simulation"}
+    assert not {module.split(".")[0] for module in local(source(name))} & {"scene", "simulation"}
 
 
 @pytest.mark.parametrize("name", ORDER)
 def test_imports_point_up_the_flow(name):
-    assert local(ROOT / "rotrecon" / f"{name}.py") & set(ORDER) <= set(ORDER[: ORDER.index(name)])
+    assert local(source(name)) & set(ORDER) <= set(ORDER[: ORDER.index(name)])
 
 
 @pytest.mark.parametrize("name", sorted(STAGES))
 def test_stages_know_only_the_types(name):
-    assert local(ROOT / "rotrecon" / f"{name}.py") <= TYPES
+    assert local(source(name)) <= TYPES
 
 
 def test_session_is_pure():

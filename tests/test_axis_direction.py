@@ -8,8 +8,6 @@ from hypothesis import given, settings
 from hypothesis import strategies as st
 
 from app.drawing_text import parse_area, parse_axis
-from rotrecon.axis_direction import held_direction
-from rotrecon.axis_proposal import propose_axis
 from rotrecon.camera import PinholeCamera
 from rotrecon.drawing import Constraints, Direction, Drawing, ObjectAxis
 from rotrecon.frame import Frame
@@ -17,6 +15,8 @@ from rotrecon.outcome import FailureReason, FitFailure
 from rotrecon.scene.reading import read_scene
 from rotrecon.settings import Settings
 from rotrecon.simulation.simulate import simulate
+from rotrecon.stroke.axis_direction import held_direction
+from rotrecon.stroke.axis_proposal import propose_axis
 from tests.exact import CAMERA, cone, cylinder, direction_of, drawing_along, exact_frame, noisy
 from tests.recordings import recording
 from tests.standing import UP, area_round, table_with, upright

@@ -8,7 +8,6 @@ from hypothesis import given, settings
 from hypothesis import strategies as st
 
 from app.drawing_text import parse_area, parse_axis
-from rotrecon.axis_proposal import propose_axis
 from rotrecon.drawing import AreaOfInterest, Drawing, DrawingError, ObjectAxis
 from rotrecon.frame import Frame
 from rotrecon.outcome import FailureReason, FitFailure
@@ -19,6 +18,7 @@ from rotrecon.scene.reading import read_scene
 from rotrecon.settings import Settings
 from rotrecon.simulation.simulate import simulate
 from rotrecon.simulation.stereo_noise import StereoErrors
+from rotrecon.stroke.axis_proposal import propose_axis
 from rotrecon.workspace import Workspace
 from tests.exact import CAMERA, cone, cylinder, direction_of, drawing_along, exact_frame, noisy
 from tests.recordings import recording

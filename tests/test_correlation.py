@@ -5,7 +5,7 @@ import pytest
 from hypothesis import given
 from hypothesis import strategies as st
 
-from rotrecon.correlation import LENGTHS_PX, Likeness, likeness_of
+from rotrecon.rays.correlation import LENGTHS_PX, Likeness, likeness_of
 from rotrecon.simulation.stereo_noise import correlated_noise
 
 SHAPE = (120, 160)

@@ -6,8 +6,8 @@ from hypothesis import given, settings
 from hypothesis import strategies as st
 
 from rotrecon.camera import PinholeCamera
-from rotrecon.edge_steps import CLEAR_PX
-from rotrecon.edges import LEAST_HALF_WIDTH_PX, LINEAR_LIGHT, Edges, find_edges
+from rotrecon.edges.edge_steps import CLEAR_PX
+from rotrecon.edges.edges import LEAST_HALF_WIDTH_PX, LINEAR_LIGHT, Edges, find_edges
 from rotrecon.simulation.ideal_drawing import outline_px
 from rotrecon.simulation.simulate import simulate
 

@@ -8,7 +8,8 @@ import pytest
 from hypothesis import given, settings
 from hypothesis import strategies as st
 
-from rotrecon.fitting import (
+from rotrecon.noise import RayNoise
+from rotrecon.rays.fitting import (
     CAUCHY,
     TUKEY,
     Depths,
@@ -20,8 +21,7 @@ from rotrecon.fitting import (
     robust_scale,
     tukey,
 )
-from rotrecon.noise import RayNoise
-from rotrecon.surfaces import Ball, Lateral, Surface, turn_of
+from rotrecon.rays.surfaces import Ball, Lateral, Surface, turn_of
 
 FOCAL_PX = 700.0
 NOISE = RayNoise(floor_m=0.0, growth_per_m=0.25 / (FOCAL_PX * 0.1), correlation_px=0.0, stated=True)

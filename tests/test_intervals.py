@@ -7,10 +7,10 @@ import pytest
 from hypothesis import given, settings
 from hypothesis import strategies as st
 
-from rotrecon.correlation import Likeness
 from rotrecon.intervals import PLANE_95, SPACE_95, ball_intervals, lateral_intervals, quantile_95, radius_sigma
-from rotrecon.ray_fit import RayFit, Sight, fine
-from rotrecon.surfaces import Ball, Lateral, Surface, turn_of
+from rotrecon.rays.correlation import Likeness
+from rotrecon.rays.ray_fit import RayFit, Sight, fine
+from rotrecon.rays.surfaces import Ball, Lateral, Surface, turn_of
 from tests.bodies import CONE, CYLINDER, Knee, body_at, depth_of, drawing_round, noisy_frame, patch_seen
 
 CENTER_M = np.array([0.02, -0.01, 0.8])

@@ -5,10 +5,10 @@ import pytest
 from hypothesis import given, settings
 from hypothesis import strategies as st
 
-from rotrecon.parts import Part, parts_of
-from rotrecon.profile import Profile, profile_of
-from rotrecon.surfaces import Lateral
-from rotrecon.turned_fit import fit_turned
+from rotrecon.rays.surfaces import Lateral
+from rotrecon.turned.parts import Part, parts_of
+from rotrecon.turned.profile import Profile, profile_of
+from rotrecon.turned.turned_fit import fit_turned
 from tests.bodies import BODIES, seen
 
 SEEDS = range(5)

@@ -3,7 +3,7 @@ import pytest
 from hypothesis import given, settings
 from hypothesis import strategies as st
 
-from rotrecon.planes import normal_of, off_plane, planes_through, refined
+from rotrecon.stroke.planes import normal_of, off_plane, planes_through, refined
 from tests.exact import CAMERA
 
 GRID = np.stack(np.meshgrid(np.arange(0.0, 320, 8), np.arange(0.0, 240, 8)), axis=-1).reshape(-1, 2)

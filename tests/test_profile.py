@@ -3,11 +3,11 @@ from dataclasses import replace
 import numpy as np
 import pytest
 
-from rotrecon.patch import Patch
-from rotrecon.profile import Profile, profile_of
-from rotrecon.ray_fit import RayFit, Sight, fine
-from rotrecon.surfaces import Ball, Lateral
-from rotrecon.turned_fit import fit_turned
+from rotrecon.rays.patch import Patch
+from rotrecon.rays.ray_fit import RayFit, Sight, fine
+from rotrecon.rays.surfaces import Ball, Lateral
+from rotrecon.turned.profile import Profile, profile_of
+from rotrecon.turned.turned_fit import fit_turned
 from tests.bodies import BODIES, BOTTLE, CONE, CYLINDER, FLANGED_PIPE, Body, as_fit, seen
 
 SEEDS = range(5)

@@ -3,7 +3,7 @@ import pytest
 from hypothesis import given
 from hypothesis import strategies as st
 
-from rotrecon.radii import axis_length_radius, fit_radii
+from rotrecon.sections.radii import axis_length_radius, fit_radii
 from rotrecon.settings import Settings
 
 PAPER = Settings(method="paper")

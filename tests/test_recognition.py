@@ -7,14 +7,14 @@ import pytest
 from hypothesis import given
 from hypothesis import strategies as st
 
-from rotrecon.correlation import Likeness
 from rotrecon.primitives import Frustum, Sphere
-from rotrecon.radii import Shape
-from rotrecon.ray_fit import RayFit, Sight
+from rotrecon.rays.correlation import Likeness
+from rotrecon.rays.ray_fit import RayFit, Sight
+from rotrecon.rays.robust import Ranked
+from rotrecon.rays.surfaces import Ball, Lateral, Surface, turn_of
 from rotrecon.recognition import candidates_of, chosen_of, half_angle_rad, is_possible, is_straight, solid_of
-from rotrecon.robust import Ranked
+from rotrecon.sections.radii import Shape
 from rotrecon.settings import Settings
-from rotrecon.surfaces import Ball, Lateral, Surface, turn_of
 
 SETTINGS = Settings()
 CENTER_M = np.array([0.02, -0.01, 0.8])

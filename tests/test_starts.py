@@ -9,9 +9,7 @@ from rotrecon.camera import PinholeCamera
 from rotrecon.drawing import Drawing, cut_sections
 from rotrecon.frame import Frame
 from rotrecon.primitives import Primitive, Sphere
-from rotrecon.segmentation import segment
-from rotrecon.settings import Settings
-from rotrecon.starts import (
+from rotrecon.rays.starts import (
     CONE_ANGLES_RAD,
     Ridge,
     ball_starts,
@@ -22,6 +20,8 @@ from rotrecon.starts import (
     robust_circle,
     robust_line,
 )
+from rotrecon.segmentation import segment
+from rotrecon.settings import Settings
 from tests.exact import CAMERA, cone, cylinder, direction_of, drawing_along, exact_frame, noisy
 
 few = settings(max_examples=15, deadline=None)

@@ -5,10 +5,10 @@ import pytest
 from hypothesis import given, settings
 from hypothesis import strategies as st
 
-from rotrecon.fitting import tukey
-from rotrecon.smoothness import UNBENT, Radii, Smoothness, next_scale, second_differences
-from rotrecon.surfaces import Ball, Lateral, turn_of
-from rotrecon.turned import Turned, turned_from
+from rotrecon.rays.fitting import tukey
+from rotrecon.rays.surfaces import Ball, Lateral, turn_of
+from rotrecon.turned.smoothness import UNBENT, Radii, Smoothness, next_scale, second_differences
+from rotrecon.turned.turned import Turned, turned_from
 from tests.bodies import BOTTLE, CONE, CYLINDER, VASE, body_at
 
 KNOTS = 12

@@ -5,15 +5,15 @@ import pytest
 
 from rotrecon.drawing import AreaOfInterest, Drawing, ObjectAxis
 from rotrecon.extent import Extent
-from rotrecon.height_radii import height_radii
-from rotrecon.limbs import limbs_of, outline_at
-from rotrecon.looks import looks_at, medians
-from rotrecon.ray_fit import RayFit
-from rotrecon.starts import Ridge
-from rotrecon.surfaces import Ball, turn_of
-from rotrecon.turned import Turned, turned_from
-from rotrecon.turned_fit import fit_turned
-from rotrecon.turned_start import Points, longest_run
+from rotrecon.rays.limbs import limbs_of, outline_at
+from rotrecon.rays.ray_fit import RayFit
+from rotrecon.rays.starts import Ridge
+from rotrecon.rays.surfaces import Ball, turn_of
+from rotrecon.turned.height_radii import height_radii
+from rotrecon.turned.looks import looks_at, medians
+from rotrecon.turned.turned import Turned, turned_from
+from rotrecon.turned.turned_fit import fit_turned
+from rotrecon.turned.turned_start import Points, longest_run
 from tests.bodies import (
     BODIES,
     BOTTLE,

@@ -11,9 +11,9 @@ from rotrecon.axis import Axis, FittedAxis, cut_in_space, fit_axis, span_along
 from rotrecon.circles import SectionCircles, base_points, circumcircles
 from rotrecon.drawing import Drawing, cut_sections
 from rotrecon.frame import Frame
-from rotrecon.radii import SHAPE_OF_KIND, axis_length_radius, fit_radii
 from rotrecon.reconstruct import usable_depth
-from rotrecon.section_cuts import cut_until_settled
+from rotrecon.sections.radii import SHAPE_OF_KIND, axis_length_radius, fit_radii
+from rotrecon.sections.section_cuts import cut_until_settled
 from rotrecon.segmentation import segment
 from rotrecon.settings import Settings
 

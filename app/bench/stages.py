@@ -11,10 +11,10 @@ from rotrecon.axis import cut_in_space, fit_axis
 from rotrecon.circles import base_points, circumcircles
 from rotrecon.drawing import cut_sections
 from rotrecon.outcome import Fit
-from rotrecon.radii import SHAPES, fit_radii
 from rotrecon.reconstruct import reconstruct, usable_depth
 from rotrecon.reconstruction import Reconstruction
-from rotrecon.section_fit import fit_solid
+from rotrecon.sections.radii import SHAPES, fit_radii
+from rotrecon.sections.section_fit import fit_solid
 from rotrecon.segmentation import segment
 from rotrecon.settings import Settings
 

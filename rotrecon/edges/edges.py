@@ -1,0 +1,158 @@
+"""Where an object's outline runs in the picture, to a fraction of a pixel, near where depth says it is."""
+
+from dataclasses import dataclass
+from typing import Any, cast
+
+import numpy as np
+from numpy.typing import ArrayLike, NDArray
+from scipy import ndimage  # pyright: ignore[reportMissingTypeStubs]
+
+from rotrecon.arrays import Bools, Bytes, Floats, freeze
+from rotrecon.edges.edge_lines import BEYOND_PX, Stretch, find_line
+from rotrecon.edges.edge_steps import Profiles, find_steps
+
+ACROSS_PX = np.array([-5, -4, -3, -2, -1.5, -1, -0.5, 0, 0.5, 1, 1.5, 2, 3, 4, 5])
+"""Samples across an edge: half a pixel apart where it may be, one where texture is learnt, and no farther off, where
+other things begin."""
+PROFILE_PX = float(ACROSS_PX[-1])
+LEAST_HALF_WIDTH_PX = 3.5
+"""Of an object that has a colour of its own between its edges."""
+LEAST_POINTS = 12
+"""Fewer points say too little of what is a line and what a texture."""
+LEAST_LENGTH_PX = 8.0
+"""Of a stretch: twice the distance over which steps are averaged."""
+LEAST_SUPPORT = 0.33
+"""Of a line to be trusted: half the lines through texture alone have less."""
+RUNNER_UP_SHARE = 0.6
+"""Of the support, what a second line may have beside one that is trusted."""
+LEAST_FOUND = 0.6
+"""Share of the points with an edge on a line to be trusted."""
+LARGEST_SIGMA_PX = 0.5
+"""Of a line to be trusted: more says nothing that depth does not know."""
+
+
+SCIPY = cast(Any, ndimage)
+"""It comes without types."""
+
+
+def _decoded() -> Floats:
+    encoded = np.arange(256) / 255.0
+    return np.where(encoded <= 0.04045, encoded / 12.92, ((encoded + 0.055) / 1.055) ** 2.4)
+
+
+LINEAR_LIGHT = _decoded()
+"""Of sRGB values (IEC 61966-2-1): a pixel that shows two things is their mean in light, not in display values."""
+
+
+@dataclass(frozen=True)
+class Side:
+    """What the edges of one stretch of the outline are worth together."""
+
+    support: float
+    """From 0 to 1: how strong the edges on its line are, on average, over the strongest ones near it."""
+    runner_up: float
+    """The same of the best other line: a shadow, a print, or else this one is."""
+    found: float
+    """Share with an edge of its points that are well inside the picture."""
+    sigma_px: float
+    """Standard error of its mean offset."""
+    blur_px: float
+    """Standard deviation of the picture's blur there."""
+
+    @property
+    def trusted(self) -> bool:
+        """Whether this is the outline, and no other line could be it."""
+        clear = self.support >= LEAST_SUPPORT and self.runner_up <= RUNNER_UP_SHARE * self.support
+        return clear and self.found >= LEAST_FOUND and self.sigma_px <= LARGEST_SIGMA_PX
+
+
+NOTHING = Side(0.0, 0.0, 0.0, np.inf, np.nan)
+"""Where there is too little to look at."""
+
+
+@dataclass(frozen=True, eq=False)
+class Edges:
+    """Edges near the predicted points of an outline."""
+
+    offset_px: Floats
+    """(N,) signed distance from the predicted point along its normal, outward; NaN: none, or one off the line."""
+    sigma_px: Floats
+    """(N,) standard error, so large that points taken as independent have their side's own error together."""
+    contrast: Floats
+    """(N,) distance of the object's colour from the background's, in standard deviations of their textures."""
+    sides: tuple[Side, ...]
+    """In the order of their numbers."""
+
+    def __post_init__(self) -> None:
+        freeze(self)
+
+
+def find_edges(
+    image: Bytes,
+    point_px: Floats,
+    normal_px: Floats,
+    reach_px: float,
+    half_width_px: ArrayLike,
+    side: NDArray[np.integer[Any]] | None = None,
+) -> Edges:
+    """The outline of an object in a picture (H, W, 3), sRGB, near predicted points (N, 2) in order along it.
+
+    `normal_px` (N, 2) are unit vectors away from the object, `half_width_px` (N,) is half the object's width there,
+    `reach_px` is how far the prediction may be off. `side` (N,) numbers the stretches, each of which is one smooth line
+    close to parallel to its points: the two limbs of a cylinder, or all of a ball's circle. Its `Side` says whether
+    what was found there is the outline. Points 1 to 2 px apart are enough. ValueError for shapes that do not fit, and
+    for a reach that is not positive.
+    """
+    half_width = np.broadcast_to(np.asarray(half_width_px, dtype=np.float64), len(point_px))
+    numbers = np.zeros(len(point_px), dtype=np.int64) if side is None else side
+    if not (point_px.shape == normal_px.shape == (len(numbers), 2)):
+        raise ValueError("points and normals must be (N, 2), and sides (N,)")
+    if reach_px <= 0:
+        raise ValueError("the reach must be positive")
+    usable = _usable(image, point_px, normal_px, half_width, reach_px)
+    groups = [np.flatnonzero(numbers == number) for number in np.unique(numbers)]
+    read = [rows for rows in (group[usable[group]] for group in groups) if _long_enough(point_px[rows])]
+    stretches = [Stretch(point_px[rows], normal_px[rows], half_width[rows]) for rows in read]
+    profiles = _profiles(image, stretches, reach_px) if stretches else []
+    found = np.full((3, len(point_px)), np.nan)
+    sides = dict.fromkeys(numbers.tolist(), NOTHING)
+    for rows, profile, steps in zip(read, profiles, find_steps(profiles), strict=True):
+        found[:, rows] = steps.offset_px, steps.sigma_px, steps.contrast
+        line, share = profile.line, float(np.isfinite(steps.offset_px).mean())
+        sides[int(numbers[rows[0]])] = Side(line.support, line.runner_up, share, steps.mean_sigma_px, steps.blur_px)
+    return Edges(*found, sides=tuple(sides[number] for number in sorted(sides)))
+
+
+def _usable(image: Bytes, point_px: Floats, normal_px: Floats, half_width_px: Floats, reach_px: float) -> Bools:
+    """Which points (N,) have their whole profile in the picture, and an object wide enough inside."""
+    most = reach_px + BEYOND_PX + PROFILE_PX
+    ends = np.stack([point_px - most * normal_px, point_px + most * normal_px])
+    within = (ends >= 0) & (ends <= np.array(image.shape[1::-1]) - 1)
+    return within.all(axis=(0, 2)) & (half_width_px >= LEAST_HALF_WIDTH_PX)
+
+
+def _long_enough(point_px: Floats) -> bool:
+    length = np.linalg.norm(np.diff(point_px, axis=0), axis=1).sum()
+    return len(point_px) >= LEAST_POINTS and length >= LEAST_LENGTH_PX
+
+
+def _profiles(image: Bytes, stretches: list[Stretch], reach_px: float) -> list[Profiles]:
+    """The line of edges near every stretch, and the colours across it."""
+    points = np.concatenate([stretch.point_px for stretch in stretches])
+    border = reach_px + BEYOND_PX + PROFILE_PX + 1
+    low = np.floor(points.min(axis=0) - border).astype(np.int64).clip(0, None)
+    high = np.ceil(points.max(axis=0) + border).astype(np.int64) + 1
+    crop = image[low[1] : high[1], low[0] : high[0]]
+    splines = [SCIPY.spline_filter(LINEAR_LIGHT[crop[..., channel]]) for channel in range(3)]
+    picture = crop.astype(np.float32)
+    profiles: list[Profiles] = []
+    for stretch in stretches:
+        here = Stretch(stretch.point_px - low, stretch.normal_px, stretch.half_width_px)
+        line = find_line(picture, here, reach_px)
+        inward = float(here.half_width_px.min())
+        across = ACROSS_PX[-inward <= ACROSS_PX]
+        place = here.profiles_at(line.offset_px, across)
+        at = [place[..., 1], place[..., 0]]
+        light = [SCIPY.map_coordinates(spline, at, order=3, prefilter=False, mode="nearest") for spline in splines]
+        profiles.append(Profiles(here, line, across, np.stack(light, axis=-1)))
+    return profiles

@@ -1,0 +1,1 @@
+"""Surfaces fitted along the rays, in the quantity in which the sensor errs."""

@@ -1,0 +1,255 @@
+"""The one robust loop: a surface moved until the depths, and the outline, it predicts along the rays are those seen."""
+
+from collections.abc import Callable
+from dataclasses import dataclass, replace
+from typing import Protocol
+
+import cv2
+import numpy as np
+
+from rotrecon.arrays import Bools, Floats, Indices, freeze
+from rotrecon.noise import RayNoise
+from rotrecon.rays.surfaces import Rays, Surface
+
+TUKEY = 4.685
+"""Residuals beyond so many sigma count for nothing; at this value 95 % of the efficiency of least squares is kept
+(Beaton and Tukey 1974)."""
+CAUCHY = 2.385
+"""The same for the heavy-tailed loss that comes first, whose pull never ends (Holland and Welsch 1977)."""
+TO_SIGMA = 1.4826
+"""Standard deviation over median magnitude, for normal errors."""
+FIRST_DAMPING, MOST_DAMPING = 1e-3, 1e6
+LARGEST_M = 100.0
+"""A radius beyond this is that of nothing an arm could hold."""
+SETTLED = 1e-4
+"""A step that changes the cost by less than this share is the last."""
+
+
+@dataclass(frozen=True, eq=False)
+class Prediction:
+    """What a surface predicts for one kind of measurement."""
+
+    residual: Floats
+    """(N,) seen less predicted, in standard deviations."""
+    columns: Floats
+    """(k, N) derivatives of the predicted by the surface's parameters."""
+
+
+class Measurement(Protocol):
+    """One kind of measurement of a surface, N numbers of it."""
+
+    def predict(self, surface: Surface) -> Prediction:
+        """What the surface predicts for it."""
+        ...
+
+    def chosen(self, index: Indices | Bools) -> "Measurement":
+        """Some of the N."""
+        ...
+
+    def __len__(self) -> int: ...
+
+
+@dataclass(frozen=True, eq=False)
+class Depths:
+    """Depths seen along rays."""
+
+    rays: Rays
+    steps: Floats
+    """(N,) depth in standard deviations of its noise; see `RayNoise.steps`."""
+    noise: RayNoise
+
+    def __len__(self) -> int:
+        return len(self.steps)
+
+    def predict(self, surface: Surface) -> Prediction:
+        """Residuals along the rays."""
+        trace = surface.trace(self.rays)
+        return Prediction(
+            self.steps - self.noise.steps(trace.depth_m), trace.columns / self.noise.sigma_m(trace.depth_m)
+        )
+
+    def chosen(self, index: Indices | Bools) -> "Depths":
+        """Some of the rays."""
+        return replace(self, rays=self.rays[:, index], steps=self.steps[index])
+
+
+@dataclass(frozen=True, eq=False)
+class MatchedDepths:
+    """Depths as a matcher gives them: means of disparity over those of a window's pixels that show the object.
+
+    Pixels beyond the outline have a prediction too, where a window reaches the object.
+    """
+
+    rays: Rays
+    """(3, M) of all pixels that the windows may reach."""
+    place: Indices
+    """(M,) of these in a flattened rectangle."""
+    shape: tuple[int, int]
+    """Height and width of the rectangle, px."""
+    window_px: int
+    """Odd."""
+    index: Indices
+    """(N,) which of the M pixels were measured."""
+    steps: Floats
+    """(N,)"""
+    noise: RayNoise
+
+    def __post_init__(self) -> None:
+        freeze(self)
+
+    def __len__(self) -> int:
+        return len(self.steps)
+
+    def predict(self, surface: Surface) -> Prediction:
+        """Residuals along the rays."""
+        trace = surface.trace(self.rays)
+        predicted = self.noise.steps(trace.depth_m)
+        columns = trace.columns / self.noise.sigma_m(trace.depth_m)
+        share = self._summed(np.ones(len(self.place)), trace.hit)
+        reached, seen = share > 0.5, np.maximum(share, 1.0)
+
+        def mean(values: Floats) -> Floats:
+            return np.where(reached, self._summed(values, trace.hit) / seen, values[self.index])
+
+        return Prediction(self.steps - mean(predicted), np.stack([mean(column) for column in columns]))
+
+    def _summed(self, values: Floats, hit: Bools) -> Floats:
+        """Sums (N,) over the windows round the measured pixels, of values (M,) of those that hit."""
+        image = np.zeros(self.shape)
+        image.ravel()[self.place[hit]] = values[hit]
+        side = (self.window_px, self.window_px)
+        summed = cv2.boxFilter(image, -1, side, normalize=False, borderType=cv2.BORDER_CONSTANT)
+        summed = np.asarray(summed, dtype=np.float64)
+        return summed.ravel()[self.place[self.index]]
+
+    def chosen(self, index: Indices | Bools) -> "MatchedDepths":
+        """Some of the pixels."""
+        return replace(self, index=self.index[index], steps=self.steps[index])
+
+
+@dataclass(frozen=True, eq=False)
+class Outline:
+    """Rays seen to graze the surface: edges in the picture."""
+
+    rays: Rays
+    sigma_px: Floats
+    """(N,)"""
+    focal_px: float
+
+    def __post_init__(self) -> None:
+        freeze(self)
+
+    def __len__(self) -> int:
+        return len(self.sigma_px)
+
+    def predict(self, surface: Surface) -> Prediction:
+        """How far the rays pass outside the surface, in the picture; seen is that they do not."""
+        tangency = surface.tangency(self.rays)
+        scale = self.focal_px / (tangency.depth_m * self.sigma_px)
+        return Prediction(-tangency.gap_m * scale, tangency.columns * scale)
+
+    def chosen(self, index: Indices | Bools) -> "Outline":
+        """Some of the edges."""
+        return replace(self, rays=self.rays[:, index], sigma_px=self.sigma_px[index])
+
+
+Loss = Callable[[Floats], tuple[Floats, Floats]]
+"""Cost (N,) and weight (N,) of residuals (N,) in sigmas."""
+
+
+def cauchy(residual: Floats) -> tuple[Floats, Floats]:
+    """Heavy-tailed: no start is too far."""
+    squared = np.square(residual / CAUCHY)
+    return CAUCHY**2 / 2 * np.log1p(squared), 1.0 / (1.0 + squared)
+
+
+def tukey(residual: Floats) -> tuple[Floats, Floats]:
+    """Redescending: what is far off has no say."""
+    inside = np.maximum(1.0 - np.square(residual / TUKEY), 0.0)
+    return TUKEY**2 / 6 * (1.0 - inside**3), inside**2
+
+
+@dataclass(frozen=True, eq=False)
+class Refined:
+    """Where the loop ended."""
+
+    surface: Surface
+    cost: float
+    information: Floats
+    """(k, k) weighted normal matrix, 1 / sigma^2."""
+    converged: bool
+
+
+def refine(
+    surface: Surface,
+    measurements: list[Measurement],
+    weighting: list[tuple[float, float]],
+    loss: Loss,
+    free: Bools,
+    units: Floats,
+    iterations: int,
+) -> Refined:
+    """Iteratively reweighted Levenberg-Marquardt over the `free` (k,) parameters (Nocedal and Wright 2006, 10.3).
+
+    `weighting` holds for each measurement the sigma of its residuals, and the share of them that are independent.
+    `units` (k,) make the damping the same for all parameters.
+    """
+    damping = FIRST_DAMPING
+    cost, gradient, information = _normal_equations(surface, measurements, weighting, loss, units)
+    converged = False
+    for _ in range(iterations):
+        step = _step(gradient, information, damping, free, units)
+        trial = surface.stepped(step)
+        trial_cost, trial_gradient, trial_information = _normal_equations(trial, measurements, weighting, loss, units)
+        if 0 < trial.size_m < LARGEST_M and trial_cost <= cost:
+            converged = cost - trial_cost <= SETTLED * max(cost, 1e-300)
+            surface, cost, gradient, information = trial, trial_cost, trial_gradient, trial_information
+            damping /= 10.0
+        else:
+            damping *= 10.0
+        if converged or damping > MOST_DAMPING:
+            break
+    return Refined(surface, cost, information / np.outer(units, units), converged)
+
+
+def _step(gradient: Floats, information: Floats, damping: float, free: Bools, units: Floats) -> Floats:
+    step = np.zeros(len(units))
+    kept = np.ix_(free, free)
+    damped = information[kept] + damping * np.diag(np.maximum(np.diag(information)[free], 1e-300))
+    try:
+        step[free] = np.linalg.solve(damped, gradient[free])
+    except np.linalg.LinAlgError:
+        return step
+    return step * units
+
+
+def _normal_equations(
+    surface: Surface, measurements: list[Measurement], weighting: list[tuple[float, float]], loss: Loss, units: Floats
+) -> tuple[float, Floats, Floats]:
+    """Cost, gradient (k,) and information (k, k) in the parameters' units."""
+    count = len(units)
+    cost, gradient, information = 0.0, np.zeros(count), np.zeros((count, count))
+    for measurement, (sigma, share) in zip(measurements, weighting, strict=True):
+        prediction = measurement.predict(surface)
+        residual = prediction.residual / sigma
+        costs, weights = loss(residual)
+        columns = prediction.columns * (units[:, None] / sigma)
+        weighted = columns * (share * weights)
+        cost += share * float(costs.sum())
+        gradient += weighted @ residual
+        information += weighted @ columns.T
+    return cost, gradient, information
+
+
+def robust_scale(residual: Floats) -> float:
+    """Sigma of residuals (N,), most of which are noise: the median magnitude, then the spread of what it keeps.
+
+    Of the residuals within 3 sigma a normal distribution keeps 98.7 % of its standard deviation.
+    """
+    sigma = TO_SIGMA * float(np.median(np.abs(residual)))
+    for _ in range(3):
+        kept = residual[np.abs(residual) < 3 * sigma]
+        if len(kept) == 0:
+            break
+        sigma = float(np.sqrt(np.mean(kept**2))) / 0.9866
+    return sigma

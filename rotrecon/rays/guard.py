@@ -1,0 +1,128 @@
+"""Which depths near the limbs can be believed: all, those that a matching window explains, or only inner ones."""
+
+from dataclasses import dataclass, replace
+
+import numpy as np
+
+from rotrecon.arrays import Bools, Floats
+from rotrecon.rays.fitting import Outline, tukey
+from rotrecon.rays.patch import Patch
+from rotrecon.rays.ray_fit import RayFit, Sight, fine, predicted
+from rotrecon.rays.surfaces import Lateral, Surface
+
+MATCHED = 0.25
+"""Errors less alike than this are not those of matching windows, which is what limbs suffer from."""
+INNER_GUARD = 0.6
+"""Share of the radius within which depth is taken as it is: surfaces turn away by less than 40 degrees there."""
+GUARDS = (0.7, 0.75, 0.8, 0.85, 0.9, 0.95)
+"""The widest that agrees with the inner depths is sought where neither all depths nor a window do."""
+WINDOW_OVER_CORRELATION = 1.6
+"""A window's side over the length at which errors it smooths are alike to 1/e."""
+LARGEST_WINDOW_PX = 11
+ROUGHER = 1.1
+"""Depths that err in one way alone do not become rougher toward the limbs by more than this, and by chance."""
+CHANCE, SUSPICION = 3.5, 1.0
+"""Standard deviations by which inner depths may be explained worse, and by which a size may differ from theirs."""
+CORRECTION_DOUBT = 0.25
+"""Standard deviation of what one way to a size changes, over the change: neither way is without error."""
+WINDOWS_AT_MOST = 1.3
+"""Times as rough as the inner ones, at most, windows alone make all depths (measured on simulated stereo)."""
+DECISIVE = 1.03
+"""Ratio of their roughness at which the limbs themselves decide between windows and none."""
+FEWEST_INDEPENDENT = 8.0
+"""Inner depths that are fewer than that can judge nothing."""
+
+Outlines = tuple[tuple[Outline, float], ...]
+
+
+@dataclass(frozen=True, eq=False)
+class Task:
+    """What is to be fitted."""
+
+    patch: Patch
+    units: Floats
+    free: Bools
+    outlines: Outlines
+
+
+def settle(surface: Surface, task: Task) -> RayFit | None:
+    """The fit to as many depths as agree with the inner ones (Hausman 1978: an efficient estimate is believed while it
+    agrees with one that rests on less)."""
+    whole = _fit(surface, task, Sight())
+    if whole is None or surface.side > 0 or whole.likeness.alike < MATCHED:
+        return whole
+    inner = _fit(whole.surface, task, Sight(guard=INNER_GUARD))
+    window_px = _odd(WINDOW_OVER_CORRELATION * max(whole.likeness.length_px, task.patch.noise.correlation_px))
+    explicable = inner is None or whole.sigma < WINDOWS_AT_MOST * inner.sigma
+    windowed = None
+    if explicable and 3 <= window_px <= LARGEST_WINDOW_PX:
+        windowed = _fit(surface, task, Sight(window_px))
+    smoothest = min((fit for fit in (whole, windowed) if fit), key=lambda fit: fit.sigma)
+    roughest = max((fit for fit in (whole, windowed) if fit), key=lambda fit: fit.sigma)
+    decisive = roughest.sigma > DECISIVE * smoothest.sigma
+    if inner is None or (_as_smooth(smoothest, inner) and (decisive or _explains(smoothest, inner, task.patch))):
+        return smoothest if smoothest is whole else doubting(smoothest, whole)
+    best, narrow, wide = inner, 0, len(GUARDS)
+    while narrow < wide:
+        middle = (narrow + wide) // 2
+        guarded = _fit(whole.surface, task, Sight(guard=GUARDS[middle]))
+        if guarded is not None and _as_smooth(guarded, inner) and _as_large(guarded, inner):
+            best, narrow = guarded, middle + 1
+        else:
+            wide = middle
+    return doubting(best, whole)
+
+
+def _fit(surface: Surface, task: Task, sight: Sight) -> RayFit | None:
+    return fine(surface, task.patch, task.units, task.free, sight, task.outlines)
+
+
+def _as_smooth(fit: RayFit, inner: RayFit) -> bool:
+    """Whether a fit to more depths is as smooth as the inner one."""
+    independent = max(inner.independent, FEWEST_INDEPENDENT)
+    return fit.sigma <= inner.sigma * (ROUGHER + 0.5 / np.sqrt(2.0 * independent))
+
+
+def _explains(fit: RayFit, inner: RayFit, patch: Patch) -> bool:
+    """Whether a fit to more depths explains the inner ones nearly as well as their own fit does.
+
+    Twice the difference of the costs has a chi-square distribution with as many degrees as parameters (Wilks 1938).
+    """
+    own, other = (
+        float(tukey(predicted(patch, inner.pixels, one.surface, Sight()).residual / inner.sigma)[0].sum())
+        for one in (inner, fit)
+    )
+    degrees = int(inner.free.sum())
+    return 2 * inner.likeness.independent_share * (other - own) <= degrees + CHANCE * np.sqrt(2 * degrees)
+
+
+def _as_large(fit: RayFit, inner: RayFit) -> bool:
+    """Whether a fit to more depths has the size of the inner one, as nearly as where limbs are seen to mislead."""
+    variance = np.maximum(np.diag(inner.covariance) - np.diag(fit.covariance), 0.0)[_size_of(fit)]
+    apart = abs(fit.surface.size_m - inner.surface.size_m)
+    return bool(apart <= SUSPICION * np.sqrt(variance) + 1e-6)
+
+
+def doubting(fit: RayFit, other: RayFit) -> RayFit:
+    """A fit that is less sure of its size by a share of its difference from another, which believes other things."""
+    first = _size_of(fit)
+    apart = _size(fit.surface) - _size(other.surface)
+    covariance = fit.covariance.copy()
+    covariance[first:, first:] += np.outer(apart, apart)[: len(apart), : len(apart)] * CORRECTION_DOUBT**2
+    return replace(fit, covariance=covariance)
+
+
+def _size(surface: Surface) -> Floats:
+    """Radius, and slope where it is a parameter."""
+    return np.array(
+        [surface.radius_m, surface.slope] if isinstance(surface, Lateral) and surface.tapers else [surface.radius_m]
+    )
+
+
+def _size_of(fit: RayFit) -> int:
+    """Place of the radius among the parameters."""
+    return 3 if len(fit.free) == 4 else 4
+
+
+def _odd(value: float) -> int:
+    return 2 * int(value / 2) + 1

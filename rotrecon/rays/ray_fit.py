@@ -1,0 +1,221 @@
+"""A surface fitted to all depths of a patch that are compared, and to an outline, each with the weight it has."""
+
+from dataclasses import dataclass
+
+import numpy as np
+
+from rotrecon.arrays import Bools, Floats, Indices, freeze
+from rotrecon.rays.correlation import Likeness, likeness_of
+from rotrecon.rays.fitting import (
+    TUKEY,
+    Depths,
+    MatchedDepths,
+    Measurement,
+    Outline,
+    Prediction,
+    refine,
+    robust_scale,
+    tukey,
+)
+from rotrecon.rays.patch import Patch
+from rotrecon.rays.surfaces import Surface
+
+FINE_ITERATIONS, FINE_ROUNDS = 8, 3
+OVERSAMPLED, LEAST_PIXELS = 20.0, 2500
+"""Pixels compared for each independent one, and at least: more would only repeat them."""
+HASTY_PIXELS = 20000
+"""Enough for a first round; the next takes all."""
+REPEATING = 0.25
+"""Likeness of errors above which neighbouring pixels repeat each other."""
+TAMED_PX = 0.3
+"""Distance from the outline within which depths count as if they were that far inside, where errors are alike."""
+SETTLED_SIZE = 1e-4
+"""A round that changes the radius by less than this share is the last."""
+NEAR_PX = 4.0
+"""Pixels so far outside the outline still speak for or against it."""
+INLIER_SIGMA = 3.0
+"""Residuals beyond are not asked how alike they are."""
+GOLDEN = 0.6180339887498949
+"""Fractional parts of its multiples fall evenly, whatever the picture's own period."""
+WHOLE = 1e3
+"""A guard that keeps every pixel."""
+
+
+@dataclass(frozen=True)
+class Sight:
+    """Which depths are compared, and how they are predicted."""
+
+    window_px: int = 1
+    """Side of the matching window that is modelled; 1 for none."""
+    guard: float = WHOLE
+    """Pixels are left out whose ray passes farther beside the axis than this share of the radius."""
+
+
+@dataclass(frozen=True, eq=False)
+class RayFit:
+    """A surface, and what it rests on."""
+
+    surface: Surface
+    sight: Sight
+    outlines: tuple[tuple[Outline, float], ...]
+    """Each with its independent share."""
+    free: Bools
+    """(k,) parameters that were fitted."""
+    pixels: Indices
+    """(N,) of the patch, whose depths were compared."""
+    residual: Floats
+    """(N,) in standard deviations of the noise."""
+    sigma: float
+    """Of the residuals of those that fit."""
+    likeness: Likeness
+    covariance: Floats
+    """(k, k), zero for what was not fitted."""
+
+    def __post_init__(self) -> None:
+        freeze(self)
+
+    @property
+    def independent(self) -> float:
+        """How many of the depths err independently."""
+        return len(self.pixels) * self.likeness.independent_share
+
+
+def fine(
+    surface: Surface,
+    patch: Patch,
+    units: Floats,
+    free: Bools,
+    sight: Sight,
+    outlines: tuple[tuple[Outline, float], ...] = (),
+) -> RayFit | None:
+    """Rounds over the pixels within the outline and close to it; None when there are too few to hold the parameters."""
+    share, alike, size_m, judge = 1.0, 0.0, surface.size_m, surface
+    pixels: Indices = np.empty(0, dtype=np.int32)
+    for round_ in range(FINE_ROUNDS):
+        # a guard that followed the surface would let it shrink away from what does not fit
+        pixels = near(judge if sight.guard < 1 else surface, patch, patch.drawn & np.isfinite(patch.depth_m), sight)
+        if sight.window_px == 1 and alike > REPEATING:
+            pixels = spread(pixels, max(int(OVERSAMPLED * share * len(pixels)), LEAST_PIXELS))
+        if len(pixels) < 2 * len(units):
+            return None
+        hasty = round_ == 0 and sight.window_px == 1 and len(pixels) > HASTY_PIXELS
+        pixels = spread(pixels, HASTY_PIXELS) if hasty else pixels
+        depths = _measured(patch, pixels, surface, sight)
+        sigma, likeness = _noise_of(patch, pixels, depths.predict(surface).residual)
+        share, alike = likeness.independent_share, likeness.alike
+        measurements: list[Measurement] = [depths, *(outline for outline, _ in outlines)]
+        weighting = [(sigma, share), *((1.0, outline_share) for _, outline_share in outlines)]
+        surface = refine(surface, measurements, weighting, tukey, free, units, FINE_ITERATIONS).surface
+        if abs(surface.size_m - size_m) < SETTLED_SIZE * size_m and not hasty:
+            break
+        size_m = surface.size_m
+    return _finished(surface, patch, pixels, free, sight, outlines)
+
+
+def _finished(
+    surface: Surface,
+    patch: Patch,
+    pixels: Indices,
+    free: Bools,
+    sight: Sight,
+    outlines: tuple[tuple[Outline, float], ...],
+) -> RayFit:
+    """A fit that has come to its end, with the covariance H^-1 M H^-1 of errors that are alike (Huber 1967).
+
+    H is the information that the depths were weighted with, and the outline's; M the variance of its gradient: of the
+    depths J C J' with C their autocorrelation, of outlines, whose share is known, their information itself.
+    """
+    depths = _measured(patch, pixels, surface, sight).predict(surface)
+    sigma, likeness = _noise_of(patch, pixels, depths.residual)
+    scaled, share = depths.residual / sigma, likeness.independent_share
+    weight = tukey(scaled)[1]
+    columns = depths.columns * (weight > 0) / sigma
+    if likeness.alike > REPEATING:
+        columns *= _tamed(surface, patch, pixels, depths.columns)
+    from_outlines = sum(
+        (_information(outline.predict(surface), outline_share) for outline, outline_share in outlines),
+        start=np.zeros((len(free), len(free))),
+    )
+    believed = weight > 0
+    information = share * float(_response(scaled[believed]).mean()) * (columns @ columns.T) + from_outlines
+    smeared = np.empty_like(columns)
+    for number, column in enumerate(columns):
+        image = np.zeros(patch.shape)
+        image.ravel()[pixels] = column
+        smeared[number] = likeness.smeared(image).ravel()[pixels]
+    spread_of_score = float((weight * scaled) @ (weight * scaled)) / max(float((weight > 0).sum()), 1.0)
+    variance = share**2 * spread_of_score * (columns @ smeared.T) + from_outlines
+    covariance = np.zeros_like(information)
+    kept = np.ix_(free, free)
+    inverse = np.linalg.pinv(information[kept], hermitian=True)
+    covariance[kept] = inverse @ variance[kept] @ inverse
+    return RayFit(surface, sight, outlines, free, pixels, depths.residual, sigma, likeness, covariance)
+
+
+def _tamed(surface: Surface, patch: Patch, pixels: Indices, columns: Floats) -> Floats:
+    """Share (N,) of their derivatives that depths are credited with: next to the outline they grow without limit, and
+    errors that are alike in many pixels are not small enough for derivatives to hold."""
+    depth_m = patch.depth_m[pixels]
+    steepest = np.sqrt(surface.size_m * patch.focal_px / (2 * TAMED_PX * depth_m)) / patch.noise.sigma_m(depth_m)
+    by_radius = np.abs(columns[3 if len(columns) == 4 else 4])
+    return np.minimum(1.0, steepest / np.maximum(by_radius, 1e-12))
+
+
+def _response(residual: Floats) -> Floats:
+    """Derivative (N,) of a residual's pull by the residual, both in sigmas: less than its weight."""
+    squared = np.square(residual / TUKEY)
+    return (1.0 - squared) * (1.0 - 5.0 * squared)
+
+
+def _information(prediction: Prediction, share: float) -> Floats:
+    return share * (prediction.columns * tukey(prediction.residual)[1]) @ prediction.columns.T
+
+
+def predicted(patch: Patch, pixels: Indices, surface: Surface, sight: Sight) -> Prediction:
+    """What a surface predicts for the depths of some pixels."""
+    return _measured(patch, pixels, surface, sight).predict(surface)
+
+
+def _noise_of(patch: Patch, pixels: Indices, residual: Floats) -> tuple[float, Likeness]:
+    """Sigma of those residuals that fit, and how they are alike."""
+    sigma = max(robust_scale(residual), 1e-9)
+    image = np.full(patch.shape, np.nan)
+    image.ravel()[pixels] = np.where(np.abs(residual) < INLIER_SIGMA * sigma, residual, np.nan)
+    return sigma, likeness_of(image)
+
+
+def depths_of(patch: Patch, pixels: Indices) -> Depths:
+    """The depths of some pixels."""
+    return Depths(patch.rays[:, pixels], patch.noise.steps(patch.depth_m[pixels]), patch.noise)
+
+
+def _measured(patch: Patch, pixels: Indices, surface: Surface, sight: Sight) -> Depths | MatchedDepths:
+    """The depths of some pixels, with all pixels of the surface that their windows may reach if those are modelled."""
+    if sight.window_px == 1:
+        return depths_of(patch, pixels)
+    place = near(surface, patch, np.ones(len(patch.area), dtype=np.bool_), Sight(sight.window_px))
+    position = np.full(len(patch.area), -1, dtype=np.int32)
+    position[place] = np.arange(len(place), dtype=np.int32)
+    pixels_there = position[pixels]
+    steps = patch.noise.steps(patch.depth_m[pixels])
+    return MatchedDepths(patch.rays[:, place], place, patch.shape, sight.window_px, pixels_there, steps, patch.noise)
+
+
+def near(surface: Surface, patch: Patch, among: Bools, sight: Sight) -> Indices:
+    """Pixels within the guard, and within the outline or not farther outside than windows reach and a little more."""
+    pixels = np.flatnonzero(among).astype(np.int32)
+    if surface.side > 0:
+        return pixels
+    rays = patch.rays[:, pixels]
+    if sight.guard < 1:
+        return pixels[surface.off_middle(rays) < sight.guard]
+    tangency = surface.tangency(rays)
+    gap_px = tangency.gap_m * patch.focal_px / np.maximum(tangency.depth_m, 1e-9)
+    return pixels[(gap_px < NEAR_PX + sight.window_px / 2) & (tangency.depth_m > 0)]
+
+
+def spread(pixels: Indices, count: int) -> Indices:
+    """At most `count` of the pixels, evenly."""
+    if len(pixels) <= count:
+        return pixels.astype(np.int32)
+    return pixels[np.sort((np.arange(count) * GOLDEN % 1.0 * len(pixels)).astype(np.int64))].astype(np.int32)

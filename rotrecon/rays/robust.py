@@ -1,0 +1,164 @@
+"""The robust method: every kind of surface fitted along the rays to the same depths and outline, and ranked."""
+
+from dataclasses import dataclass, replace
+from operator import itemgetter
+from typing import Literal
+
+import numpy as np
+
+from rotrecon.rays.coarse_fit import follow
+from rotrecon.rays.fitting import TUKEY, Outline, tukey
+from rotrecon.rays.guard import Outlines, Task, doubting, settle
+from rotrecon.rays.hypotheses import Held, Scene, coarse_cost, hypotheses
+from rotrecon.rays.limbs import SeenOutline, seen_outline
+from rotrecon.rays.ray_fit import RayFit, Sight, fine, predicted
+from rotrecon.rays.surfaces import Ball, Lateral, Surface
+from rotrecon.sections.radii import Shape
+
+PARAMETERS: dict[Shape, int] = {"cylinder": 5, "cone": 6, "sphere": 4}
+HOPELESS = 2.0
+"""Shapes whose coarse cost is so many times that of the best, and a little more, are not looked into any further."""
+LITTLE = 50.0
+OTHER_TAPERS_RAD = tuple(np.deg2rad([-7.0, 7.0]))
+"""By which a surface may taper more or less than its depths have it."""
+OUTLINE_ROUNDS = 2
+"""The better the surface, the more of its outline is found."""
+
+
+@dataclass(frozen=True, eq=False)
+class Ranked:
+    """One shape, and how much less credible than the best it is."""
+
+    shape: Shape | Literal["revolution"]
+    surface: Surface
+    fit: RayFit | None
+    """None for a shape that was hopeless from the start."""
+    cost: float
+    """Half the Bayesian information criterion, above that of the best: its belief falls with exp(-cost)."""
+
+
+def rank(scene: Scene, held: Held) -> tuple[Ranked, ...]:
+    """The shapes that could be fitted, the most credible first (Schwarz 1978).
+
+    The best is fitted to as many depths as can be believed, the others to the same, so that their costs compare.
+    """
+    found = hypotheses(scene, held)
+    limit = HOPELESS * min(cost for cost, _ in found.values()) + LITTLE
+    promising: list[Shape] = [shape for shape in found if found[shape][0] <= limit]
+    worth: dict[Shape, tuple[float, Surface]] = {shape: found[shape] for shape in promising}
+    outlines, followed = _following(scene, held, worth)
+    order = sorted(followed, key=lambda shape: followed[shape][0] + PARAMETERS[shape])
+    lead = next((fit for shape in order if (fit := _settled(scene, held, followed[shape][1], outlines))), None)
+    if lead is None:
+        return ()
+    ranked: list[Ranked] = []
+    for shape in order:
+        fit = _like(lead, scene, held, followed[shape][1])
+        if fit is not None:
+            cost = _cost(scene, lead, fit) + PARAMETERS[shape] / 2 * np.log(_independent(lead))
+            ranked.append(Ranked(shape, fit.surface, fit, cost))
+    ranked.sort(key=lambda one: one.cost)
+    best, worst = ranked[0].cost, ranked[-1].cost
+    out = [
+        Ranked(shape, surface, None, worst - best + cost) for shape, (cost, surface) in found.items() if cost > limit
+    ]
+    return (*(replace(one, cost=one.cost - best) for one in ranked), *out)
+
+
+def _following(
+    scene: Scene, held: Held, found: dict[Shape, tuple[float, Surface]]
+) -> tuple[Outlines, dict[Shape, tuple[float, Surface]]]:
+    """The outline in the picture, and the surfaces with their costs once they have followed it; none for a ball.
+
+    From a surface that has followed one side of it, the other may be seen too.
+    """
+    seen = SeenOutline(None, 0)
+    for round_ in range(OUTLINE_ROUNDS):
+        order = [surface for _, surface in sorted(found.values(), key=itemgetter(0))]
+        if isinstance(order[0], Ball):
+            # the edge of a ball, everywhere as bright as what is behind it or brighter, is seen too far inside
+            return (), found
+        for surface in (*order, *_tapered(order[0])) if round_ == 0 else order[:1]:
+            if seen.sides == 2:
+                break
+            other = seen_outline(surface, scene.patch, scene.segments, scene.length_m)
+            seen = max(seen, other, key=lambda one: one.rank)
+        if seen.edges is None:
+            return (), found
+        edges = seen.edges
+        found = {shape: _followed(scene, held, surface, edges) for shape, (_, surface) in found.items()}
+    assert seen.edges is not None
+    return ((seen.edges, 1.0),), found
+
+
+def _tapered(surface: Surface) -> list[Surface]:
+    """The surface with half angles that depths flattened at the limbs may have missed."""
+    if not isinstance(surface, Lateral):
+        return []
+    return [replace(surface, slope=surface.slope + float(np.tan(angle)), tapers=True) for angle in OTHER_TAPERS_RAD]
+
+
+def _followed(scene: Scene, held: Held, surface: Surface, edges: Outline) -> tuple[float, Surface]:
+    """Cost and surface, once it has followed the outline."""
+    units, free = surface.units(scene.length_m), held.free(surface)
+    surface = follow(surface, scene.patch, scene.pixels, units, free, (edges, scene.outline))
+    return coarse_cost(replace(scene, outline=edges), surface), surface
+
+
+def _settled(scene: Scene, held: Held, surface: Surface, outlines: Outlines) -> RayFit | None:
+    """The fit to the depths that can be believed, then to the outline with them; it doubts what the two differ by."""
+    units, free = surface.units(scene.length_m), held.free(surface)
+    depths = _sound(settle(surface, Task(scene.patch, units, free, ())))
+    if depths is None or not outlines:
+        return depths
+    return _with_outline(scene, held, surface, depths, outlines)
+
+
+def _with_outline(scene: Scene, held: Held, surface: Surface, depths: RayFit, outlines: Outlines) -> RayFit | None:
+    """A surface fitted to the outline too; it doubts what that changes, and what the limbs as they are would change."""
+    units, free = surface.units(scene.length_m), held.free(surface)
+    both = _sound(fine(surface, scene.patch, units, free, depths.sight, outlines))
+    if both is None or depths.sight == Sight():
+        return both and doubting(both, depths)
+    whole = _sound(fine(both.surface, scene.patch, units, free, Sight(), outlines))
+    return doubting(both, depths) if whole is None else doubting(doubting(both, depths), whole)
+
+
+def _sound(fit: RayFit | None) -> RayFit | None:
+    """A fit whose numbers are numbers."""
+    return fit if fit is not None and np.isfinite(fit.sigma) and np.isfinite(fit.covariance).all() else None
+
+
+def _like(lead: RayFit, scene: Scene, held: Held, surface: Surface) -> RayFit | None:
+    """A surface fitted to the depths and the outline that the lead rests on."""
+    units, free = surface.units(scene.length_m), held.free(surface)
+    if len(lead.free) == len(free):
+        return lead
+    depths = _sound(fine(surface, scene.patch, units, free, lead.sight))
+    if depths is None or not lead.outlines:
+        return depths
+    return _with_outline(scene, held, surface, depths, lead.outlines)
+
+
+def _independent(lead: RayFit) -> float:
+    """How many of the measurements are independent, at least two."""
+    return max(lead.independent + sum(share * len(outline) for outline, share in lead.outlines), 2.0)
+
+
+def _cost(scene: Scene, lead: RayFit, fit: RayFit) -> float:
+    """Misfit of a surface to the depths and the outline that the lead rests on.
+
+    What lies beyond its outline costs nothing if the lead does not explain it either, and else as much as any outlier.
+    """
+    rays = scene.patch.rays[:, lead.pixels]
+    costs = tukey(predicted(scene.patch, lead.pixels, fit.surface, lead.sight).residual / lead.sigma)[0]
+    if fit.surface.side < 0:
+        tangency = fit.surface.tangency(rays)
+        gap_px = tangency.gap_m * scene.patch.focal_px / np.maximum(tangency.depth_m, 1e-9)
+        beyond = gap_px > (lead.sight.window_px - 1) / 2
+        explained = np.abs(lead.residual) < TUKEY * lead.sigma
+        costs = np.where(beyond, np.where(explained, TUKEY**2 / 6, 0.0), costs)
+    cost = lead.likeness.independent_share * float(costs.sum())
+    for outline, share in lead.outlines:
+        cost += share * float(tukey(outline.predict(fit.surface).residual)[0].sum())
+    return cost

@@ -1,0 +1,1 @@
+"""The axis an operator would have drawn, and directions that are held."""

@@ -1,0 +1,1 @@
+"""Solids of revolution with any profile, and the parts they consist of."""

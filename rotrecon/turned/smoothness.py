@@ -1,0 +1,97 @@
+"""The curve of a turned surface through radii that were seen, and the prior that keeps it smooth as the data ask."""
+
+from dataclasses import dataclass, replace
+
+import numpy as np
+
+from rotrecon.arrays import Bools, Floats, Indices, freeze
+from rotrecon.rays.fitting import Prediction
+from rotrecon.rays.surfaces import Surface
+from rotrecon.turned.turned import AXIS_PARAMETERS, Turned
+
+UNBENT = (100.0, 100.0**2)
+"""Sigma and independent share of the prior for the robust loop: no loss bends residuals that small, and their cost
+stays that of their square."""
+LEAST_SCALE_M = 1e-5
+"""A bend that nothing could measure."""
+
+
+@dataclass(frozen=True, eq=False)
+class Smoothness:
+    """The prior that second differences of a turned surface's coefficients are small (P-splines, Eilers, Marx 1996)."""
+
+    scale_m: float
+    """Standard deviation of a second difference."""
+    rows: Indices
+    """(n,) which of the K - 2 are asked for."""
+
+    @staticmethod
+    def of(surface: Turned, scale_m: float) -> "Smoothness":
+        """That of all second differences of a surface."""
+        return Smoothness(scale_m, np.arange(len(surface.coefficients_m) - 2, dtype=np.int32))
+
+    def __post_init__(self) -> None:
+        freeze(self)
+
+    def __len__(self) -> int:
+        return len(self.rows)
+
+    def predict(self, surface: Surface) -> Prediction:
+        """Second differences; what is seen is none. Raises TypeError for a surface that has no coefficients."""
+        if not isinstance(surface, Turned):
+            raise TypeError("only a turned surface has a profile to be smooth")
+        differences = second_differences(len(surface.coefficients_m))[self.rows] / self.scale_m
+        axis = np.zeros((AXIS_PARAMETERS, len(self.rows)))
+        return Prediction(-differences @ surface.coefficients_m, np.concatenate([axis, differences.T]))
+
+    def chosen(self, index: Indices | Bools) -> "Smoothness":
+        """Some of the differences."""
+        return replace(self, rows=self.rows[index])
+
+
+@dataclass(frozen=True, eq=False)
+class Radii:
+    """Radii seen at n heights about the axis of a turned surface, whose own errors move them with it."""
+
+    height_m: Floats
+    radius_m: Floats
+    sigma_m: Floats
+    """(n,) each by itself."""
+    lever: Floats
+    """(4, n) how much less each is for a step of the axis' parameters."""
+
+    def __post_init__(self) -> None:
+        freeze(self)
+
+    def __len__(self) -> int:
+        return len(self.height_m)
+
+    def predict(self, surface: Surface) -> Prediction:
+        """The surface's radii there. Raises TypeError for a surface that is not turned."""
+        if not isinstance(surface, Turned):
+            raise TypeError("only a turned surface has a profile")
+        columns = np.concatenate([self.lever, surface.basis(self.height_m)]) / self.sigma_m
+        return Prediction((self.radius_m - surface.curve(self.height_m)[0]) / self.sigma_m, columns)
+
+    def chosen(self, index: Indices | Bools) -> "Radii":
+        """Some of the heights."""
+        return Radii(self.height_m[index], self.radius_m[index], self.sigma_m[index], self.lever[:, index])
+
+
+def second_differences(count: int) -> Floats:
+    """(count - 2, count) matrix."""
+    return np.diff(np.eye(count), 2, axis=0)
+
+
+def next_scale(surface: Turned, information: Floats, scale_m: float, free: Bools) -> float:
+    """The prior's scale at which its bends are as large as it expects them (Wood and Fasiolo 2017, Fellner-Schall).
+
+    tau^2 = |D c|^2 / (rank - tr(H^-1 S)), with S = D'D / tau^2 that part of the information H that is the prior's.
+    """
+    differences = second_differences(len(surface.coefficients_m))
+    prior = np.zeros_like(information)
+    prior[AXIS_PARAMETERS:, AXIS_PARAMETERS:] = differences.T @ differences / scale_m**2
+    kept = np.ix_(free, free)
+    held = float(np.trace(np.linalg.pinv(information[kept], hermitian=True) @ prior[kept]))
+    bends = float(np.square(differences @ surface.coefficients_m).sum())
+    return max(float(np.sqrt(bends / max(len(differences) - held, 1e-6))), LEAST_SCALE_M)
