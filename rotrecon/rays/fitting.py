@@ -9,7 +9,7 @@ import numpy as np
 
 from rotrecon.arrays import Bools, Floats, Indices, freeze
 from rotrecon.noise import RayNoise
-from rotrecon.rays.surfaces import Rays, Surface
+from rotrecon.rays.surfaces import Derivatives, Rays, Surface
 
 TUKEY = 4.685
 """Residuals beyond so many sigma count for nothing; at this value 95 % of the efficiency of least squares is kept
@@ -23,16 +23,16 @@ LARGEST_M = 100.0
 """A radius beyond this is that of nothing an arm could hold."""
 SETTLED = 1e-4
 """A step that changes the cost by less than this share is the last."""
+UNSCALED = np.array(1.0)
+"""Scale of derivatives that are multiplied out."""
 
 
 @dataclass(frozen=True, eq=False)
-class Prediction:
-    """What a surface predicts for one kind of measurement."""
+class Prediction(Derivatives):
+    """What a surface predicts for one kind of measurement, with its derivatives by the surface's parameters."""
 
     residual: Floats
     """(N,) seen less predicted, in standard deviations."""
-    columns: Floats
-    """(k, N) derivatives of the predicted by the surface's parameters."""
 
 
 class Measurement(Protocol):
@@ -64,9 +64,8 @@ class Depths:
     def predict(self, surface: Surface) -> Prediction:
         """Residuals along the rays."""
         trace = surface.trace(self.rays)
-        return Prediction(
-            self.steps - self.noise.steps(trace.depth_m), trace.columns / self.noise.sigma_m(trace.depth_m)
-        )
+        scale = trace.scale / self.noise.sigma_m(trace.depth_m)
+        return Prediction(trace.gradient, scale, self.steps - self.noise.steps(trace.depth_m))
 
     def chosen(self, index: Indices | Bools) -> "Depths":
         """Some of the rays."""
@@ -111,7 +110,7 @@ class MatchedDepths:
         def mean(values: Floats) -> Floats:
             return np.where(reached, self._summed(values, trace.hit) / seen, values[self.index])
 
-        return Prediction(self.steps - mean(predicted), np.stack([mean(column) for column in columns]))
+        return Prediction(np.stack([mean(column) for column in columns]), UNSCALED, self.steps - mean(predicted))
 
     def _summed(self, values: Floats, hit: Bools) -> Floats:
         """Sums (N,) over the windows round the measured pixels, of values (M,) of those that hit."""
@@ -146,7 +145,7 @@ class Outline:
         """How far the rays pass outside the surface, in the picture; seen is that they do not."""
         tangency = surface.tangency(self.rays)
         scale = self.focal_px / (tangency.depth_m * self.sigma_px)
-        return Prediction(-tangency.gap_m * scale, tangency.columns * scale)
+        return Prediction(tangency.gradient, tangency.scale * scale, -tangency.gap_m * scale)
 
     def chosen(self, index: Indices | Bools) -> "Outline":
         """Some of the edges."""
@@ -194,11 +193,13 @@ def refine(
     `weighting` holds for each measurement the sigma of its residuals, and the share of them that are independent.
     `units` (k,) make the damping the same for all parameters.
     """
-    damping = FIRST_DAMPING
+    damping, kept = FIRST_DAMPING, np.ix_(free, free)
     cost, gradient, information = _normal_equations(surface, measurements, weighting, loss, units)
     converged = False
     for _ in range(iterations):
-        step = _step(gradient, information, damping, free, units)
+        step = np.zeros(len(units))
+        step[free] = _step(gradient[free], information[kept], damping)
+        step *= units
         trial = surface.stepped(step)
         trial_cost, trial_gradient, trial_information = _normal_equations(trial, measurements, weighting, loss, units)
         if 0 < trial.size_m < LARGEST_M and trial_cost <= cost:
@@ -212,15 +213,14 @@ def refine(
     return Refined(surface, cost, information / np.outer(units, units), converged)
 
 
-def _step(gradient: Floats, information: Floats, damping: float, free: Bools, units: Floats) -> Floats:
-    step = np.zeros(len(units))
-    kept = np.ix_(free, free)
-    damped = information[kept] + damping * np.diag(np.maximum(np.diag(information)[free], 1e-300))
+def _step(gradient: Floats, information: Floats, damping: float) -> Floats:
+    """Solution (k,) of the damped normal equations; zero where they have none."""
+    diagonal = information.reshape(-1)[:: len(gradient) + 1]
+    diagonal += damping * np.maximum(diagonal, 1e-300)
     try:
-        step[free] = np.linalg.solve(damped, gradient[free])
+        return np.linalg.solve(information, gradient)
     except np.linalg.LinAlgError:
-        return step
-    return step * units
+        return np.zeros(len(gradient))
 
 
 def _normal_equations(
@@ -233,12 +233,13 @@ def _normal_equations(
         prediction = measurement.predict(surface)
         residual = prediction.residual / sigma
         costs, weights = loss(residual)
-        columns = prediction.columns * (units[:, None] / sigma)
-        weighted = columns * (share * weights)
+        scale = prediction.scale * (1.0 / sigma)
+        weights *= scale
         cost += share * float(costs.sum())
-        gradient += weighted @ residual
-        information += weighted @ columns.T
-    return cost, gradient, information
+        gradient += share * (prediction.gradient @ (weights * residual))
+        weights *= scale
+        information += share * ((prediction.gradient * weights) @ prediction.gradient.T)
+    return cost, gradient * units, information * np.outer(units, units)
 
 
 def robust_scale(residual: Floats) -> float:

@@ -23,8 +23,8 @@ from rotrecon.rays.surfaces import Surface
 FINE_ITERATIONS, FINE_ROUNDS = 8, 3
 OVERSAMPLED, LEAST_PIXELS = 20.0, 2500
 """Pixels compared for each independent one, and at least: more would only repeat them."""
-HASTY_PIXELS = 20000
-"""Enough for a first round; the next takes all."""
+HASTY_PIXELS = 2500
+"""Enough for a first round, evenly; the next takes all that tell something new."""
 REPEATING = 0.25
 """Likeness of errors above which neighbouring pixels repeat each other."""
 TAMED_PX = 0.3
@@ -98,13 +98,16 @@ def fine(
             pixels = spread(pixels, max(int(OVERSAMPLED * share * len(pixels)), LEAST_PIXELS))
         if len(pixels) < 2 * len(units):
             return None
-        hasty = round_ == 0 and sight.window_px == 1 and len(pixels) > HASTY_PIXELS
-        pixels = spread(pixels, HASTY_PIXELS) if hasty else pixels
         depths = _measured(patch, pixels, surface, sight)
         sigma, likeness = _noise_of(patch, pixels, depths.predict(surface).residual)
         share, alike = likeness.independent_share, likeness.alike
-        measurements: list[Measurement] = [depths, *(outline for outline, _ in outlines)]
-        weighting = [(sigma, share), *((1.0, outline_share) for _, outline_share in outlines)]
+        hasty = round_ == 0 and len(pixels) > HASTY_PIXELS
+        used = spread(np.arange(len(pixels), dtype=np.int32), HASTY_PIXELS) if hasty else None
+        measurements: list[Measurement] = [depths if used is None else depths.chosen(used)]
+        measurements += [outline for outline, _ in outlines]
+        # those that stand for others have their say
+        say = share if used is None else min(share * len(pixels) / len(used), 1.0)
+        weighting = [(sigma, say), *((1.0, outline_share) for _, outline_share in outlines)]
         surface = refine(surface, measurements, weighting, tukey, free, units, FINE_ITERATIONS).surface
         if abs(surface.size_m - size_m) < SETTLED_SIZE * size_m and not hasty:
             break

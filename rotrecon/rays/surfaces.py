@@ -23,27 +23,41 @@ Rays = Floats
 
 
 @dataclass(frozen=True, eq=False)
-class Trace:
-    """Where rays meet a surface, in which a ray that misses is continued smoothly beyond the outline."""
+class Derivatives:
+    """Of N numbers by the k parameters of a surface, in two factors, for most uses need not multiply them out."""
+
+    gradient: Floats
+    """(k, N)"""
+    scale: Floats
+    """(N,) or (), of all k alike."""
+
+    @property
+    def columns(self) -> Floats:
+        """(k, N) the derivatives."""
+        return self.gradient * self.scale
+
+
+@dataclass(frozen=True, eq=False)
+class Trace(Derivatives):
+    """Where rays meet a surface, in which a ray that misses is continued smoothly beyond the outline.
+
+    The derivatives are those of the depth.
+    """
 
     depth_m: Floats
     """(N,) along z."""
     hit: Bools
     """(N,) which rays truly meet it."""
-    columns: Floats
-    """(k, N) derivatives of the depth by the parameters."""
 
 
 @dataclass(frozen=True, eq=False)
-class Tangency:
-    """How far rays pass outside a surface, negative for those that meet it."""
+class Tangency(Derivatives):
+    """How far rays pass outside a surface, negative for those that meet it; the derivatives are those of the gap."""
 
     gap_m: Floats
     """(N,)"""
     depth_m: Floats
     """(N,) along z, of the point of the ray that is nearest to the surface."""
-    columns: Floats
-    """(k, N) derivatives of the gap by the parameters."""
 
 
 @dataclass(frozen=True, eq=False)
@@ -52,7 +66,7 @@ class _Roots:
 
     a: Floats
     b: Floats
-    c: Floats
+    c: float
 
     @property
     def nearest_m(self) -> Floats:
@@ -61,13 +75,17 @@ class _Roots:
 
     def depth(self, side: int, grazing_disc: Floats) -> tuple[Floats, Floats, Bools]:
         """Depth of the near (-1) or far (+1) root, the root of the discriminant, at least grazing, and what hits."""
-        disc = self.b**2 - self.a * self.c
-        grazing_disc = np.maximum(grazing_disc, SMALLEST)
-        floor = np.sqrt(grazing_disc)
+        disc = self.b * self.b
+        disc -= self.a * self.c
+        np.maximum(grazing_disc, SMALLEST, out=grazing_disc)
         root = np.sqrt(np.maximum(disc, grazing_disc))
+        reach = side * root
         # below the grazing value the root goes on along its tangent, so that a ray that misses still pulls
-        reach = root + np.minimum(disc - grazing_disc, 0.0) / (2 * floor)
-        return (-self.b + side * reach) / self.a, root, disc > 0
+        low = np.flatnonzero(disc < grazing_disc)
+        reach[low] += side * (disc[low] - grazing_disc[low]) / (2 * root[low])
+        reach -= self.b
+        reach /= self.a
+        return reach, root, disc > 0
 
 
 @dataclass(frozen=True, eq=False)
@@ -108,54 +126,60 @@ class Lateral:
         return np.array([*unit, 1.0 / length_m] if self.tapers else unit)
 
     def _quadratic(self, rays: Rays) -> tuple[Floats, Floats, _Roots]:
-        turned = self.turn @ rays
+        """Directions (3, N) and the camera (3,) in the surface's own coordinates, and the quadratics."""
         origin = -self.turn @ self.center_m
         radius = self.radius_m + self.slope * origin[2]
-        growth = self.slope * turned[2]
-        a = turned[0] ** 2 + turned[1] ** 2 - growth**2
+        halved = origin[0] * self.turn[0] + origin[1] * self.turn[1] - radius * self.slope * self.turn[2]
+        turned = np.concatenate([self.turn, halved[None]]) @ rays
+        x, y, h, b = turned
+        a = x * x
+        a += y * y
+        if self.slope != 0:
+            growth = self.slope * h
+            a -= growth * growth
         # a ray along a cone's flank meets it at infinity, one steeper than that from the other side
-        a = np.where(np.abs(a) < FLANK, FLANK, a)
-        b = origin[0] * turned[0] + origin[1] * turned[1] - radius * growth
-        c = origin[0] ** 2 + origin[1] ** 2 - radius**2
-        return turned, origin, _Roots(a, b, np.asarray(c))
+        a[np.abs(a) < FLANK] = FLANK
+        return turned[:3], origin, _Roots(a, b, float(origin[0] ** 2 + origin[1] ** 2 - radius**2))
 
     def trace(self, rays: Rays) -> Trace:
         """Where rays meet it; parameters: shift across, shift toward the camera, turn by each, radius, slope."""
         turned, origin, roots = self._quadratic(rays)
-        nearest = roots.nearest_m
-        grazing = (
-            2 * GRAZING_PX / self.focal_px * np.abs(roots.a * self._radius_there(turned, origin, nearest) * nearest)
-        )
+        grazing = np.abs(roots.b)
+        grazing *= 2 * GRAZING_PX / self.focal_px
+        grazing *= np.abs(self._radius_at(origin[2] + roots.nearest_m * turned[2])) if self.slope else self.radius_m
         depth, root, hit = roots.depth(self.side, grazing)
-        x, y, h = origin[:, None] + depth * turned
-        radius = self.radius_m + self.slope * h
-        lever = h + self.slope * radius
-        return Trace(depth, hit, self._columns(x, y, h, radius, lever) * (-self.side / root))
+        return Trace(self._gradient(*self._point(turned, origin, depth)), -self.side / root, depth, hit)
 
     def tangency(self, rays: Rays) -> Tangency:
         """How far rays pass outside it."""
         turned, origin, roots = self._quadratic(rays)
         depth = roots.nearest_m
-        x, y, h = origin[:, None] + depth * turned
-        radius = self.radius_m + self.slope * h
-        lever = h + self.slope * radius
+        x, y, h = self._point(turned, origin, depth)
+        radius = self._radius_at(h)
         gap = (x**2 + y**2 - radius**2) / (2 * radius)
-        return Tangency(gap, depth, self._columns(x, y, h, radius, lever) / radius)
+        return Tangency(self._gradient(x, y, h), 1.0 / radius, gap, depth)
 
-    def _columns(self, x: Floats, y: Floats, h: Floats, radius: Floats, lever: Floats) -> Floats:
+    def _point(self, turned: Floats, origin: Floats, depth: Floats) -> Floats:
+        """Points (3, N) of rays in the surface's own coordinates."""
+        points = turned * depth
+        points += origin[:, None]
+        return points
+
+    def _radius_at(self, h: Floats) -> Floats:
+        return self.radius_m + self.slope * h
+
+    def _gradient(self, x: Floats, y: Floats, h: Floats) -> Floats:
         """Derivatives (k, N) of (x^2 + y^2 - radius^2) / 2 at points of the surface's own coordinates."""
-        columns = np.empty((6 if self.tapers else 5, len(x)))
-        np.negative(x, out=columns[0])
-        np.negative(y, out=columns[1])
-        np.multiply(columns[0], lever, out=columns[2])
-        np.multiply(columns[1], lever, out=columns[3])
-        np.negative(radius, out=columns[4])
+        radius = self._radius_at(h) if self.slope else self.radius_m
+        lever = h + self.slope * radius if self.slope else h
+        gradient = np.empty((6 if self.tapers else 5, len(x)))
+        np.negative(x, out=gradient[0])
+        np.negative(y, out=gradient[1])
+        np.multiply(gradient[:2], lever, out=gradient[2:4])
+        gradient[4] = -radius
         if self.tapers:
-            np.multiply(columns[4], h, out=columns[5])
-        return columns
-
-    def _radius_there(self, turned: Floats, origin: Floats, depth: Floats) -> Floats:
-        return self.radius_m + self.slope * (origin[2] + depth * turned[2])
+            np.multiply(gradient[4], h, out=gradient[5])
+        return gradient
 
     def heights(self, points_m: Floats) -> Floats:
         """Heights (N,) along the axis, from the centre, of points (N, 3)."""
@@ -174,12 +198,15 @@ class Lateral:
         direction /= np.sqrt(direction @ direction)
         turned = across - (across @ direction) * direction
         turned /= np.sqrt(turned @ turned)
-        return replace(
-            self,
-            center_m=self.center_m + step[0] * across + step[1] * toward,
-            turn=np.stack([turned, _cross(direction, turned), direction]),
-            radius_m=limited(self.radius_m + float(step[4]), self.limits_m),
-            slope=self.slope + float(step[5]) if self.tapers else self.slope,
+        return Lateral(
+            self.center_m + step[0] * across + step[1] * toward,
+            np.array([turned, _cross(direction, turned), direction]),
+            limited(self.radius_m + float(step[4]), self.limits_m),
+            self.slope + float(step[5]) if self.tapers else self.slope,
+            self.focal_px,
+            self.tapers,
+            self.side,
+            self.limits_m,
         )
 
 
@@ -208,26 +235,28 @@ class Ball:
         return np.ones(4)
 
     def _quadratic(self, rays: Rays) -> _Roots:
-        a = (rays**2).sum(axis=0)
+        a = np.einsum("in,in->n", rays, rays)
         b = -self.center_m @ rays
-        return _Roots(a, b, np.asarray(self.center_m @ self.center_m - self.radius_m**2))
+        return _Roots(a, b, float(self.center_m @ self.center_m - self.radius_m**2))
 
     def trace(self, rays: Rays) -> Trace:
         """Where rays meet it; parameters: the centre's three coordinates and the radius."""
         roots = self._quadratic(rays)
-        grazing = 2 * GRAZING_PX / self.focal_px * roots.a * np.abs(self.radius_m * roots.nearest_m)
+        grazing = (2 * GRAZING_PX / self.focal_px * self.radius_m) * np.abs(roots.b)
         depth, root, hit = roots.depth(self.side, grazing)
-        columns = np.empty((4, len(depth)))
-        columns[:3] = self.center_m[:, None] - depth * rays
-        columns[3] = -self.radius_m
-        return Trace(depth, hit, columns * (-self.side / root))
+        gradient = np.empty((4, len(depth)))
+        np.multiply(rays, -depth, out=gradient[:3])
+        gradient[:3] += self.center_m[:, None]
+        gradient[3] = -self.radius_m
+        return Trace(gradient, -self.side / root, depth, hit)
 
     def tangency(self, rays: Rays) -> Tangency:
         """How far rays pass outside it."""
         depth = self._quadratic(rays).nearest_m
         offset = depth * rays - self.center_m[:, None]
         gap = ((offset**2).sum(axis=0) - self.radius_m**2) / (2 * self.radius_m)
-        return Tangency(gap, depth, np.concatenate([-offset, np.full((1, len(depth)), -self.radius_m)]) / self.radius_m)
+        gradient = np.concatenate([-offset, np.full((1, len(depth)), -self.radius_m)])
+        return Tangency(gradient, np.array(1.0 / self.radius_m), gap, depth)
 
     def off_middle(self, rays: Rays) -> Floats:
         """How far beside the centre rays (3, N) pass, over the radius: 1 at the outline."""

@@ -5,7 +5,7 @@ from dataclasses import dataclass, replace
 import numpy as np
 
 from rotrecon.arrays import Bools, Floats, Indices, freeze
-from rotrecon.rays.fitting import Prediction
+from rotrecon.rays.fitting import UNSCALED, Prediction
 from rotrecon.rays.surfaces import Surface
 from rotrecon.turned.turned import AXIS_PARAMETERS, Turned
 
@@ -42,7 +42,7 @@ class Smoothness:
             raise TypeError("only a turned surface has a profile to be smooth")
         differences = second_differences(len(surface.coefficients_m))[self.rows] / self.scale_m
         axis = np.zeros((AXIS_PARAMETERS, len(self.rows)))
-        return Prediction(-differences @ surface.coefficients_m, np.concatenate([axis, differences.T]))
+        return Prediction(np.concatenate([axis, differences.T]), UNSCALED, -differences @ surface.coefficients_m)
 
     def chosen(self, index: Indices | Bools) -> "Smoothness":
         """Some of the differences."""
@@ -70,8 +70,10 @@ class Radii:
         """The surface's radii there. Raises TypeError for a surface that is not turned."""
         if not isinstance(surface, Turned):
             raise TypeError("only a turned surface has a profile")
-        columns = np.concatenate([self.lever, surface.basis(self.height_m)]) / self.sigma_m
-        return Prediction((self.radius_m - surface.curve(self.height_m)[0]) / self.sigma_m, columns)
+        gradient = np.concatenate([self.lever, surface.basis(self.height_m)])
+        return Prediction(
+            gradient, 1.0 / self.sigma_m, (self.radius_m - surface.curve(self.height_m)[0]) / self.sigma_m
+        )
 
     def chosen(self, index: Indices | Bools) -> "Radii":
         """Some of the heights."""

@@ -97,9 +97,7 @@ class Turned(Lateral):
             for values, other in zip((depth, root, hit), others, strict=True):
                 values[missed[better]] = other[better]
         self._continue(lines, depth, root, hit)
-        columns = self._by_parameters(lines, depth)
-        columns *= -self.side / root
-        return Trace(depth, hit, columns)
+        return Trace(self._by_parameters(lines, depth), -self.side / root, depth, hit)
 
     def _continue(self, lines: Lines, depth: Floats, root: Floats, hit: Bools) -> None:
         """Depths and roots of rays that miss and were led far away, as if they missed the nearest cylinder."""
@@ -161,7 +159,8 @@ class Turned(Lateral):
         lines, depth = self._nearest(rays)
         x, y = lines.aside(depth)
         radius = self.curve(lines.height(depth))[0]
-        return Tangency((x**2 + y**2 - radius**2) / (2 * radius), depth, self._by_parameters(lines, depth) / radius)
+        gap = (x**2 + y**2 - radius**2) / (2 * radius)
+        return Tangency(self._by_parameters(lines, depth), 1.0 / radius, gap, depth)
 
     def off_middle(self, rays: Rays) -> Floats:
         """How far beside the axis rays (3, N) pass, over the radius there: 1 at the outline."""

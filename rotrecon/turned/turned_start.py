@@ -62,7 +62,7 @@ class Points:
         scale = 1.0 / (np.sqrt(1.0 + slope**2) * self.sigma_m)
         lever = height + slope * out
         axis = np.stack([x, y, x * lever, y * lever]) / out
-        return Prediction((out - radius) * scale, np.concatenate([axis, surface.basis(height)]) * scale)
+        return Prediction(np.concatenate([axis, surface.basis(height)]), scale, (out - radius) * scale)
 
     def chosen(self, index: Indices | Bools) -> "Points":
         """Some of the points."""
