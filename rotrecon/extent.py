@@ -79,12 +79,12 @@ def extent_of(surface: Lateral, patch: Patch, sigma: float, correlation_px: floa
     alike. From the start the support goes outward as long as the pixels at which
     the surface would be seen have its depth, more for than against it (X-drop extension, Altschul et al. 1990).
     """
-    trace = surface.trace(patch.rays)
-    x, _, height = surface.turn @ (patch.rays * trace.depth_m - surface.center_m[:, None])
+    depth_m, hit = surface.meet(patch.rays)
+    x, _, height = surface.turn @ (patch.rays * depth_m - surface.center_m[:, None])
     radius = radius_at(surface, height)
-    seen = np.flatnonzero(trace.hit & (trace.depth_m > 0) & (np.abs(x) < INNER * radius))
+    seen = np.flatnonzero(hit & (depth_m > 0) & (np.abs(x) < INNER * radius))
     height = height[seen]
-    off = np.abs(patch.noise.steps(patch.depth_m[seen]) - patch.noise.steps(trace.depth_m[seen])) / sigma
+    off = np.abs(patch.noise.steps(patch.depth_m[seen]) - patch.noise.steps(depth_m[seen])) / sigma
     at_stroke = patch.drawn[seen] & (off < AGREES)
     if at_stroke.sum() < FEWEST_PIXELS:
         return None

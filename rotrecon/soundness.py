@@ -49,20 +49,20 @@ class Soundness:
 def soundness_of(fit: RayFit, patch: Patch, heights_m: tuple[float, float]) -> Soundness:
     """The soundness of a fit between two heights along its axis; of a ball everywhere."""
     surface = fit.surface
-    trace = surface.trace(patch.rays)
-    known = patch.drawn & trace.hit & np.isfinite(patch.depth_m)
-    points = patch.rays * trace.depth_m
+    depth_m, hit = surface.meet(patch.rays)
+    known = patch.drawn & hit & np.isfinite(patch.depth_m)
+    points = patch.rays * depth_m
     if isinstance(surface, Lateral):
         height = surface.turn[2] @ (points - surface.center_m[:, None])
         known &= (height >= heights_m[0]) & (height <= heights_m[1])
-    behind_m = np.abs(patch.depth_m - trace.depth_m)
-    sigma_m = fit.sigma * patch.noise.sigma_m(trace.depth_m)
+    behind_m = np.abs(patch.depth_m - depth_m)
+    sigma_m = fit.sigma * patch.noise.sigma_m(depth_m)
     agreeing = known & (behind_m < np.maximum(AGREES_SIGMA * sigma_m, AGREES_RADIUS * surface.size_m))
     ended, goes_on = _beyond(fit, patch, heights_m)
     return Soundness(
         inlier_share=float(agreeing.sum() / max(known.sum(), 1)),
         roughness=_roughness(fit, sigma_m[agreeing]),
-        pattern=_pattern(fit, points[:, fit.pixels], fit.residual * patch.noise.sigma_m(trace.depth_m[fit.pixels])),
+        pattern=_pattern(fit, points[:, fit.pixels], fit.residual * patch.noise.sigma_m(depth_m[fit.pixels])),
         arc_rad=_arc(fit, points[:, agreeing]),
         ended=ended,
         goes_on=goes_on,

@@ -160,7 +160,7 @@ def as_fit(
     free, nothing = np.ones(count, dtype=np.bool_), np.zeros(0)
     pixels, unalike = np.zeros(0, dtype=np.int32), Likeness(0.0, 0.0)
     return RayFit(
-        surface, Sight(guard=guard), outlines, free, pixels, nothing, sigma, unalike, np.zeros((count, count))
+        surface, Sight(guard=guard), outlines, free, pixels, nothing, sigma, unalike, lambda: np.zeros((count, count))
     )
 
 

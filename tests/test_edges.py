@@ -179,7 +179,7 @@ def test_a_print_that_runs_along_the_inside_is_not_the_outline(colour, stronger)
     light = strip(0.5, 16, WOOD, WALL)
     light[np.abs(np.abs(distances(0.5)) - 12) < 1.5] = colour
     edges = found_on(encoded(light), 0.5, 16)
-    assert np.abs(edges.offset_px).max() < 0.1
+    assert np.isnan(edges.offset_px).all() if stronger else np.abs(edges.offset_px).max() < 0.1
     for side in edges.sides:
         assert (side.runner_up > side.support) == stronger
         assert side.trusted != stronger

@@ -25,7 +25,8 @@ few = settings(max_examples=12, deadline=None)
 def fit_of(surface: Surface, covariance: np.ndarray, pixels: int = 5000) -> RayFit:
     free = np.ones(len(covariance), dtype=np.bool_)
     nothing = np.zeros(pixels)
-    return RayFit(surface, Sight(), (), free, nothing.astype(np.int32), nothing, 1.0, Likeness(0.0, 0.0), covariance)
+    unalike = Likeness(0.0, 0.0)
+    return RayFit(surface, Sight(), (), free, nothing.astype(np.int32), nothing, 1.0, unalike, lambda: covariance)
 
 
 def covariance_of(size: int, seed: int) -> np.ndarray:

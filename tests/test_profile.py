@@ -82,7 +82,7 @@ def test_an_axis_that_may_turn_leans_the_profile():
     sure = profile_of(fit, patch, heights_of(-0.08, 0.08))
     covariance = np.zeros((5, 5))
     covariance[3, 3] = 0.01**2
-    unsure = profile_of(replace(fit, covariance=covariance), patch, heights_of(-0.08, 0.08))
+    unsure = profile_of(replace(fit, own_covariance=lambda: covariance), patch, heights_of(-0.08, 0.08))
     assert sure.lean == 0.0
     # most of the side that is seen faces the camera, and turning the axis that way changes its radii by as much
     assert 0.006 < unsure.lean < 0.0105

@@ -39,7 +39,7 @@ def ranked(
     nothing = np.zeros(5000)
     fit = RayFit(
         surface, Sight(), (), np.ones(size, dtype=np.bool_), nothing.astype(np.int32), nothing, 1.0,
-        Likeness(0.0, 0.0), np.diag(sigma**2),
+        Likeness(0.0, 0.0), lambda: np.diag(sigma**2),
     )  # fmt: skip
     return Ranked(shape, surface, fit, cost)
 

@@ -155,7 +155,9 @@ def _votes(picture: NDArray[np.float32], stretch: Stretch, reach_px: float) -> _
     colour = np.asarray(cv2.remap(picture, place[..., 0], place[..., 1], cv2.INTER_LINEAR), dtype=np.float32)
     wide = bell(GRADIENT_PX / STEP_PX)
     slope = np.gradient(wide) / STEP_PX
-    change = filtered(colour, bell(ALONG_PX / stretch.spacing_px), slope)
+    change = cv2.sepFilter2D(
+        colour, cv2.CV_32F, slope, bell(ALONG_PX / stretch.spacing_px), borderType=cv2.BORDER_REPLICATE
+    )
     strength = np.sqrt((change**2).sum(axis=2))
     before, here, after = strength[:, :-2], strength[:, 1:-1], strength[:, 2:]
     edge = (here >= before) & (here > after) & (here > LEAST_GRADIENT)

@@ -8,9 +8,9 @@ edge and the more even side says more of where it ends.
 
 from collections.abc import Sequence
 from dataclasses import dataclass
-from math import erf, sqrt
 
 import numpy as np
+from scipy.special import ndtr  # pyright: ignore[reportMissingTypeStubs, reportUnknownVariableType]
 
 from rotrecon.arrays import Bools, Floats, freeze
 from rotrecon.edges.edge_lines import Line, Stretch, bell, filtered
@@ -131,7 +131,7 @@ def find_steps(stretches: Sequence[Profiles]) -> list[Steps]:
 
 def _covered(distance: Floats) -> Floats:
     """The normal distribution's integral: how much of a blurred pixel lies inside an edge, at distances from it."""
-    return np.array([0.5 + 0.5 * erf(value / sqrt(2)) for value in distance.ravel()]).reshape(distance.shape)
+    return np.asarray(ndtr(distance), dtype=np.float64)
 
 
 def _model(profiles: Profiles, clear_px: float) -> _Model:

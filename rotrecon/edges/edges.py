@@ -1,14 +1,14 @@
 """Where an object's outline runs in the picture, to a fraction of a pixel, near where depth says it is."""
 
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 from typing import Any, cast
 
 import numpy as np
 from numpy.typing import ArrayLike, NDArray
 from scipy import ndimage  # pyright: ignore[reportMissingTypeStubs]
 
-from rotrecon.arrays import Bools, Bytes, Floats, freeze
-from rotrecon.edges.edge_lines import BEYOND_PX, Stretch, find_line
+from rotrecon.arrays import Bools, Bytes, Cloud, Floats, Indices, freeze
+from rotrecon.edges.edge_lines import BEYOND_PX, Line, Stretch, find_line
 from rotrecon.edges.edge_steps import Profiles, find_steps
 
 ACROSS_PX = np.array([-5, -4, -3, -2, -1.5, -1, -0.5, 0, 0.5, 1, 1.5, 2, 3, 4, 5])
@@ -53,7 +53,7 @@ class Side:
     runner_up: float
     """The same of the best other line: a shadow, a print, or else this one is."""
     found: float
-    """Share with an edge of its points that are well inside the picture."""
+    """Share with an edge of its points that are well inside the picture; 0 if the line may be another's."""
     sigma_px: float
     """Standard error of its mean offset."""
     blur_px: float
@@ -62,8 +62,7 @@ class Side:
     @property
     def trusted(self) -> bool:
         """Whether this is the outline, and no other line could be it."""
-        clear = self.support >= LEAST_SUPPORT and self.runner_up <= RUNNER_UP_SHARE * self.support
-        return clear and self.found >= LEAST_FOUND and self.sigma_px <= LARGEST_SIGMA_PX
+        return self.found >= LEAST_FOUND and self.sigma_px <= LARGEST_SIGMA_PX
 
 
 NOTHING = Side(0.0, 0.0, 0.0, np.inf, np.nan)
@@ -75,7 +74,8 @@ class Edges:
     """Edges near the predicted points of an outline."""
 
     offset_px: Floats
-    """(N,) signed distance from the predicted point along its normal, outward; NaN: none, or one off the line."""
+    """(N,) signed distance from the predicted point along its normal, outward; NaN: none, one off the line, or a line
+    that another could be instead."""
     sigma_px: Floats
     """(N,) standard error, so large that points taken as independent have their side's own error together."""
     contrast: Floats
@@ -85,6 +85,26 @@ class Edges:
 
     def __post_init__(self) -> None:
         freeze(self)
+
+
+@dataclass(frozen=True, eq=False)
+class _Crop:
+    """The part of a picture that profiles may reach."""
+
+    image: Bytes
+    picture: Cloud
+    """The same as numbers."""
+    low_px: NDArray[np.int64]
+    """(2,) its first column and row in the whole."""
+
+    @staticmethod
+    def of(image: Bytes, point_px: Floats, reach_px: float) -> "_Crop":
+        """Round points (N, 2)."""
+        border = reach_px + BEYOND_PX + PROFILE_PX + 1
+        low = np.floor(point_px.min(axis=0) - border).astype(np.int64).clip(0, None)
+        high = np.ceil(point_px.max(axis=0) + border).astype(np.int64) + 1
+        crop = image[low[1] : high[1], low[0] : high[0]]
+        return _Crop(crop, crop.astype(np.float32), low)
 
 
 def find_edges(
@@ -111,14 +131,22 @@ def find_edges(
         raise ValueError("the reach must be positive")
     usable = _usable(image, point_px, normal_px, half_width, reach_px)
     groups = [np.flatnonzero(numbers == number) for number in np.unique(numbers)]
-    read = [rows for rows in (group[usable[group]] for group in groups) if _long_enough(point_px[rows])]
-    stretches = [Stretch(point_px[rows], normal_px[rows], half_width[rows]) for rows in read]
-    profiles = _profiles(image, stretches, reach_px) if stretches else []
-    found = np.full((3, len(point_px)), np.nan)
+    read = [
+        rows for rows in (group[usable[group]].astype(np.int32) for group in groups) if _long_enough(point_px[rows])
+    ]
+    crop = _Crop.of(image, point_px, reach_px)
     sides = dict.fromkeys(numbers.tolist(), NOTHING)
-    for rows, profile, steps in zip(read, profiles, find_steps(profiles), strict=True):
+    clear: list[tuple[Indices, Stretch, Line]] = []
+    for rows in read:
+        stretch = Stretch(point_px[rows] - crop.low_px, normal_px[rows], half_width[rows])
+        line = find_line(crop.picture, stretch, reach_px)
+        sides[int(numbers[rows[0]])] = replace(NOTHING, support=line.support, runner_up=line.runner_up)
+        if line.support >= LEAST_SUPPORT and line.runner_up <= RUNNER_UP_SHARE * line.support:
+            clear.append((rows, stretch, line))
+    found = np.full((3, len(point_px)), np.nan)
+    for (rows, _, line), steps in zip(clear, find_steps(_profiles(crop, clear)), strict=True):
         found[:, rows] = steps.offset_px, steps.sigma_px, steps.contrast
-        line, share = profile.line, float(np.isfinite(steps.offset_px).mean())
+        share = float(np.isfinite(steps.offset_px).mean())
         sides[int(numbers[rows[0]])] = Side(line.support, line.runner_up, share, steps.mean_sigma_px, steps.blur_px)
     return Edges(*found, sides=tuple(sides[number] for number in sorted(sides)))
 
@@ -136,23 +164,16 @@ def _long_enough(point_px: Floats) -> bool:
     return len(point_px) >= LEAST_POINTS and length >= LEAST_LENGTH_PX
 
 
-def _profiles(image: Bytes, stretches: list[Stretch], reach_px: float) -> list[Profiles]:
-    """The line of edges near every stretch, and the colours across it."""
-    points = np.concatenate([stretch.point_px for stretch in stretches])
-    border = reach_px + BEYOND_PX + PROFILE_PX + 1
-    low = np.floor(points.min(axis=0) - border).astype(np.int64).clip(0, None)
-    high = np.ceil(points.max(axis=0) + border).astype(np.int64) + 1
-    crop = image[low[1] : high[1], low[0] : high[0]]
-    splines = [SCIPY.spline_filter(LINEAR_LIGHT[crop[..., channel]]) for channel in range(3)]
-    picture = crop.astype(np.float32)
+def _profiles(crop: _Crop, clear: list[tuple[Indices, Stretch, Line]]) -> list[Profiles]:
+    """The colours across the line of every stretch."""
+    if not clear:
+        return []
+    splines = [SCIPY.spline_filter(LINEAR_LIGHT[crop.image[..., channel]]) for channel in range(3)]
     profiles: list[Profiles] = []
-    for stretch in stretches:
-        here = Stretch(stretch.point_px - low, stretch.normal_px, stretch.half_width_px)
-        line = find_line(picture, here, reach_px)
-        inward = float(here.half_width_px.min())
-        across = ACROSS_PX[-inward <= ACROSS_PX]
-        place = here.profiles_at(line.offset_px, across)
+    for _, stretch, line in clear:
+        across = ACROSS_PX[-float(stretch.half_width_px.min()) <= ACROSS_PX]
+        place = stretch.profiles_at(line.offset_px, across)
         at = [place[..., 1], place[..., 0]]
         light = [SCIPY.map_coordinates(spline, at, order=3, prefilter=False, mode="nearest") for spline in splines]
-        profiles.append(Profiles(here, line, across, np.stack(light, axis=-1)))
+        profiles.append(Profiles(stretch, line, across, np.stack(light, axis=-1)))
     return profiles

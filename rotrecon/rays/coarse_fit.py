@@ -22,7 +22,7 @@ LAST_SCALE = 2.0
 OUTLINE_SCALE = 0.1
 """Scale of the outline's residuals over that of the depths in coarse rounds, at least one sigma."""
 FOLLOWED_PX, FOLLOWED_SHARE = (4.0, 1.0), 0.2
-"""Scales at which a surface first follows the edges, and the say that its depths have meanwhile."""
+"""Scales at which a surface first follows the edges, and the share of its depths that have a say meanwhile."""
 COARSE_ITERATIONS, FOLLOWING_ITERATIONS = 6, 10
 LIMB_SHARE = 0.1
 """Of a section, at each side."""
@@ -60,13 +60,13 @@ def follow(
     outlines: tuple[Outline, Outline | None],
 ) -> Surface:
     """A surface moved until its outline is where edges are, some of its depths and the mask's outline having a say."""
-    depths = depths_of(patch, pixels)
+    depths = depths_of(patch, spread(pixels, int(FOLLOWED_SHARE * len(pixels))))
     scale = max(robust_scale(depths.predict(surface).residual), LAST_SCALE)
     edges, mask = outlines
     measurements: list[Measurement] = [depths, replace(edges, sigma_px=np.ones(len(edges)))]
     measurements += [] if mask is None else [mask]
     for edge_scale in FOLLOWED_PX:
-        weighting = [(scale, FOLLOWED_SHARE), (edge_scale, 1.0), (edge_scale, FOLLOWED_SHARE)][: len(measurements)]
+        weighting = [(scale, 1.0), (edge_scale, 1.0), (edge_scale, FOLLOWED_SHARE)][: len(measurements)]
         surface = refine(surface, measurements, weighting, cauchy, free, units, FOLLOWING_ITERATIONS).surface
     return surface
 

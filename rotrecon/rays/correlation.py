@@ -9,7 +9,7 @@ from rotrecon.arrays import Floats
 
 LAGS = (1, 2, 4, 7, 12)
 """Distances, px, at which residuals are compared."""
-LENGTHS_PX = (0.7, 1.0, 1.5, 2.0, 3.0, 4.0, 5.0, 6.0, 8.0, 10.0, 12.0)
+LENGTHS_PX = np.array([0.7, 1.0, 1.5, 2.0, 3.0, 4.0, 5.0, 6.0, 8.0, 10.0, 12.0])
 """Correlation lengths that are told apart."""
 FEWEST_PAIRS = 30
 """Fewer say nothing of a lag."""
@@ -43,14 +43,14 @@ def likeness_of(residual: Floats) -> Likeness:
     """The likeness of residuals (h, w), NaN where there is none."""
     known = np.isfinite(residual)
     value = np.where(known, residual, 0.0)
+    variance = float(np.vdot(value, value)) / max(int(np.count_nonzero(known)), 1)
     lags: list[float] = []
     alike: list[float] = []
-    variance = float((value**2).sum()) / max(int(known.sum()), 1)
     for lag in LAGS:
         total = pairs = 0.0
         for first, second in ((np.s_[lag:], np.s_[:-lag]), (np.s_[:, lag:], np.s_[:, :-lag])):
-            total += float(np.vdot(value[first], value[second]))
-            pairs += float(np.count_nonzero(known[first] & known[second]))
+            total += float(np.einsum("ij,ij->", value[first], value[second]))
+            pairs += np.count_nonzero(known[first] & known[second])
         if pairs >= FEWEST_PAIRS and variance > 0:
             lags.append(lag)
             alike.append(total / pairs / variance)
@@ -58,13 +58,10 @@ def likeness_of(residual: Floats) -> Likeness:
 
 
 def _fitted(lags: Floats, alike: Floats) -> Likeness:
-    best = (np.inf, Likeness(0.0, 0.0))
-    for length in LENGTHS_PX:
-        shape = np.exp(-np.square(lags / length))
-        if len(lags) == 0 or (shape**2).sum() == 0:
-            continue
-        share = float(np.clip((shape @ alike) / (shape @ shape), 0.0, 1.0))
-        cost = float(((alike - share * shape) ** 2).sum())
-        if cost < best[0]:
-            best = (cost, Likeness(share, length))
-    return best[1]
+    if len(lags) == 0:
+        return Likeness(0.0, 0.0)
+    shapes = np.exp(-np.square(lags / LENGTHS_PX[:, None]))
+    squares = np.maximum((shapes**2).sum(axis=1), np.finfo(float).tiny)
+    share = (shapes @ alike / squares).clip(0.0, 1.0)
+    best = int(np.square(alike - share[:, None] * shapes).sum(axis=1).argmin())
+    return Likeness(float(share[best]), float(LENGTHS_PX[best]))

@@ -218,7 +218,7 @@ def _step(gradient: Floats, information: Floats, damping: float) -> Floats:
     diagonal = information.reshape(-1)[:: len(gradient) + 1]
     diagonal += damping * np.maximum(diagonal, 1e-300)
     try:
-        return np.linalg.solve(information, gradient)
+        return np.asarray(np.linalg.solve(information, gradient), dtype=np.float64)
     except np.linalg.LinAlgError:
         return np.zeros(len(gradient))
 

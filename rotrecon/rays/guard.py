@@ -105,11 +105,9 @@ def _as_large(fit: RayFit, inner: RayFit) -> bool:
 
 def doubting(fit: RayFit, other: RayFit) -> RayFit:
     """A fit that is less sure of its size by a share of its difference from another, which believes other things."""
-    first = _size_of(fit)
-    apart = _size(fit.surface) - _size(other.surface)
-    covariance = fit.covariance.copy()
-    covariance[first:, first:] += np.outer(apart, apart)[: len(apart), : len(apart)] * CORRECTION_DOUBT**2
-    return replace(fit, covariance=covariance)
+    apart = np.zeros(len(fit.free))
+    apart[_size_of(fit) :] = CORRECTION_DOUBT * (_size(fit.surface) - _size(other.surface))
+    return replace(fit, doubt=fit.doubt + np.outer(apart, apart))
 
 
 def _size(surface: Surface) -> Floats:

@@ -78,13 +78,13 @@ def patch_of(frame: Frame, area: AreaOfInterest, segments: CrossSegments, kept: 
     box = np.s_[top : int(row[-1]) + MARGIN_PX + 1, left : int(column[-1]) + MARGIN_PX + 1]
     depth_m = frame.depth_m[box]
     v, u = np.indices(depth_m.shape)
-    rays = camera.unproject(np.stack([u.ravel() + left, v.ravel() + top], axis=-1), np.ones(u.size)).T
-
-    def flat(cells: Bools) -> Bools:
-        whole = np.zeros(mask.shape, dtype=np.bool_)
-        whole.ravel()[segments.pixel[cells]] = True
-        return whole[box].ravel()
-
+    place = np.stack([u.ravel() + left, v.ravel() + top], axis=-1)
+    rays = camera.unproject(place, np.ones(u.size)).T
+    # the cells of sections that are not upright miss up to a sixth of the pixels between them
+    row = (place - segments.origin_px) @ segments.along
+    beside = (row >= -0.5) & (row < len(segments.pixel) - 0.5)
+    segmented = np.zeros(mask.shape, dtype=np.bool_)
+    segmented.ravel()[segments.pixel[kept]] = True
     reachable = available(frame.points_m[box].reshape(-1, 3), frame.T_base_camera, frame.workspace)
     return Patch(
         camera=camera,
@@ -94,8 +94,8 @@ def patch_of(frame: Frame, area: AreaOfInterest, segments: CrossSegments, kept: 
         rays=np.ascontiguousarray(rays),
         depth_m=np.where(reachable, depth_m.ravel(), np.nan).astype(np.float64),
         area=mask[box].ravel(),
-        drawn=flat(segments.inside),
-        kept=flat(kept),
+        drawn=mask[box].ravel() & beside,
+        kept=segmented[box].ravel(),
         noise=noise_of(frame.noise, depth_m, camera.focal_px),
     )
 

@@ -1,6 +1,8 @@
 """A surface fitted to all depths of a patch that are compared, and to an outline, each with the weight it has."""
 
+from collections.abc import Callable
 from dataclasses import dataclass
+from functools import cached_property, partial
 
 import numpy as np
 
@@ -68,11 +70,20 @@ class RayFit:
     sigma: float
     """Of the residuals of those that fit."""
     likeness: Likeness
-    covariance: Floats
-    """(k, k), zero for what was not fitted."""
+    own_covariance: Callable[[], Floats]
+    """(k, k), zero for what was not fitted; only when asked for, as most fits are merely compared with others."""
+    doubt: Floats | float = 0.0
+    """(k, k) that is added where other ways to the same parameters differ."""
 
     def __post_init__(self) -> None:
         freeze(self)
+
+    @cached_property
+    def covariance(self) -> Floats:
+        """(k, k) of the surface's parameters, zero for what was not fitted."""
+        covariance = self.own_covariance() + self.doubt
+        covariance.flags.writeable = False
+        return covariance
 
     @property
     def independent(self) -> float:
@@ -123,36 +134,55 @@ def _finished(
     sight: Sight,
     outlines: tuple[tuple[Outline, float], ...],
 ) -> RayFit:
-    """A fit that has come to its end, with the covariance H^-1 M H^-1 of errors that are alike (Huber 1967).
+    """A fit that has come to its end."""
+    depths = _measured(patch, pixels, surface, sight).predict(surface)
+    sigma, likeness = _noise_of(patch, pixels, depths.residual)
+    own = partial(_sandwich, depths, (surface, patch, pixels), free, (sigma, likeness), outlines)
+    return RayFit(surface, sight, outlines, free, pixels, depths.residual, sigma, likeness, own)
+
+
+def _sandwich(
+    depths: Prediction,
+    fitted: tuple[Surface, Patch, Indices],
+    free: Bools,
+    noise: tuple[float, Likeness],
+    outlines: tuple[tuple[Outline, float], ...],
+) -> Floats:
+    """The covariance H^-1 M H^-1 of errors that are alike (Huber 1967).
 
     H is the information that the depths were weighted with, and the outline's; M the variance of its gradient: of the
     depths J C J' with C their autocorrelation, of outlines, whose share is known, their information itself.
     """
-    depths = _measured(patch, pixels, surface, sight).predict(surface)
-    sigma, likeness = _noise_of(patch, pixels, depths.residual)
+    (surface, patch, pixels), (sigma, likeness) = fitted, noise
     scaled, share = depths.residual / sigma, likeness.independent_share
     weight = tukey(scaled)[1]
-    columns = depths.columns * (weight > 0) / sigma
+    by_parameters = depths.columns
+    columns = by_parameters * ((weight > 0) / sigma)
     if likeness.alike > REPEATING:
-        columns *= _tamed(surface, patch, pixels, depths.columns)
+        columns *= _tamed(surface, patch, pixels, by_parameters)
     from_outlines = sum(
         (_information(outline.predict(surface), outline_share) for outline, outline_share in outlines),
         start=np.zeros((len(free), len(free))),
     )
     believed = weight > 0
     information = share * float(_response(scaled[believed]).mean()) * (columns @ columns.T) + from_outlines
+    spread_of_score = float((weight * scaled) @ (weight * scaled)) / max(float(believed.sum()), 1.0)
+    variance = share**2 * spread_of_score * (columns @ _smeared(columns, patch, pixels, likeness).T) + from_outlines
+    covariance = np.zeros_like(information)
+    kept = np.ix_(free, free)
+    inverse = np.linalg.pinv(information[kept], hermitian=True)
+    covariance[kept] = inverse @ variance[kept] @ inverse
+    return covariance
+
+
+def _smeared(columns: Floats, patch: Patch, pixels: Indices, likeness: Likeness) -> Floats:
+    """Columns (k, N) over some pixels, each convolved with the autocorrelation."""
     smeared = np.empty_like(columns)
     for number, column in enumerate(columns):
         image = np.zeros(patch.shape)
         image.ravel()[pixels] = column
         smeared[number] = likeness.smeared(image).ravel()[pixels]
-    spread_of_score = float((weight * scaled) @ (weight * scaled)) / max(float((weight > 0).sum()), 1.0)
-    variance = share**2 * spread_of_score * (columns @ smeared.T) + from_outlines
-    covariance = np.zeros_like(information)
-    kept = np.ix_(free, free)
-    inverse = np.linalg.pinv(information[kept], hermitian=True)
-    covariance[kept] = inverse @ variance[kept] @ inverse
-    return RayFit(surface, sight, outlines, free, pixels, depths.residual, sigma, likeness, covariance)
+    return smeared
 
 
 def _tamed(surface: Surface, patch: Patch, pixels: Indices, columns: Floats) -> Floats:
@@ -212,9 +242,9 @@ def near(surface: Surface, patch: Patch, among: Bools, sight: Sight) -> Indices:
     rays = patch.rays[:, pixels]
     if sight.guard < 1:
         return pixels[surface.off_middle(rays) < sight.guard]
-    tangency = surface.tangency(rays)
-    gap_px = tangency.gap_m * patch.focal_px / np.maximum(tangency.depth_m, 1e-9)
-    return pixels[(gap_px < NEAR_PX + sight.window_px / 2) & (tangency.depth_m > 0)]
+    gap_m, depth_m = surface.gap(rays)
+    gap_px = gap_m * patch.focal_px / np.maximum(depth_m, 1e-9)
+    return pixels[(gap_px < NEAR_PX + sight.window_px / 2) & (depth_m > 0)]
 
 
 def spread(pixels: Indices, count: int) -> Indices:

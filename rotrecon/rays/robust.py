@@ -21,6 +21,8 @@ HOPELESS = 2.0
 LITTLE = 50.0
 OTHER_TAPERS_RAD = tuple(np.deg2rad([-7.0, 7.0]))
 """By which a surface may taper more or less than its depths have it."""
+OUT_OF_QUESTION = 20.0
+"""Difference of costs at which a shape is not asked any further: its odds are one to half a billion."""
 OUTLINE_ROUNDS = 2
 """The better the surface, the more of its outline is found."""
 
@@ -49,14 +51,13 @@ def rank(scene: Scene, held: Held) -> tuple[Ranked, ...]:
     outlines, followed = _following(scene, held, worth)
     order = sorted(followed, key=lambda shape: followed[shape][0] + PARAMETERS[shape])
     lead = next((fit for shape in order if (fit := _settled(scene, held, followed[shape][1], outlines))), None)
-    if lead is None:
+    if lead is None or not np.isfinite(lead.covariance).all():
         return ()
     ranked: list[Ranked] = []
     for shape in order:
         fit = _like(lead, scene, held, followed[shape][1])
-        if fit is not None:
-            cost = _cost(scene, lead, fit) + PARAMETERS[shape] / 2 * np.log(_independent(lead))
-            ranked.append(Ranked(shape, fit.surface, fit, cost))
+        if fit is not None and np.isfinite(fit.covariance).all():
+            ranked.append(Ranked(shape, fit.surface, fit, _credit(scene, lead, fit)))
     ranked.sort(key=lambda one: one.cost)
     best, worst = ranked[0].cost, ranked[-1].cost
     out = [
@@ -126,18 +127,29 @@ def _with_outline(scene: Scene, held: Held, surface: Surface, depths: RayFit, ou
 
 def _sound(fit: RayFit | None) -> RayFit | None:
     """A fit whose numbers are numbers."""
-    return fit if fit is not None and np.isfinite(fit.sigma) and np.isfinite(fit.covariance).all() else None
+    return fit if fit is not None and np.isfinite([fit.sigma, fit.surface.size_m]).all() else None
 
 
 def _like(lead: RayFit, scene: Scene, held: Held, surface: Surface) -> RayFit | None:
-    """A surface fitted to the depths and the outline that the lead rests on."""
+    """A surface fitted to the depths and the outline that the lead rests on.
+
+    What it doubts is of interest only if it may be the object's.
+    """
     units, free = surface.units(scene.length_m), held.free(surface)
     if len(lead.free) == len(free):
         return lead
+    if not lead.outlines:
+        return _sound(fine(surface, scene.patch, units, free, lead.sight))
+    both = _sound(fine(surface, scene.patch, units, free, lead.sight, lead.outlines))
+    if both is None or _credit(scene, lead, both) > _credit(scene, lead, lead) + OUT_OF_QUESTION:
+        return both
     depths = _sound(fine(surface, scene.patch, units, free, lead.sight))
-    if depths is None or not lead.outlines:
-        return depths
-    return _with_outline(scene, held, surface, depths, lead.outlines)
+    return depths and _with_outline(scene, held, surface, depths, lead.outlines)
+
+
+def _credit(scene: Scene, lead: RayFit, fit: RayFit) -> float:
+    """Half the Bayesian information criterion, to be compared with that of others fitted like the lead."""
+    return _cost(scene, lead, fit) + len(fit.free) / 2 * float(np.log(_independent(lead)))
 
 
 def _independent(lead: RayFit) -> float:
@@ -148,16 +160,15 @@ def _independent(lead: RayFit) -> float:
 def _cost(scene: Scene, lead: RayFit, fit: RayFit) -> float:
     """Misfit of a surface to the depths and the outline that the lead rests on.
 
-    What lies beyond its outline costs nothing if the lead does not explain it either, and else as much as any outlier.
+    What lies beyond its outline costs as much as any outlier: by how many pixels of the background two fits differ is
+    chance, as neither was fitted to them.
     """
     rays = scene.patch.rays[:, lead.pixels]
     costs = tukey(predicted(scene.patch, lead.pixels, fit.surface, lead.sight).residual / lead.sigma)[0]
     if fit.surface.side < 0:
-        tangency = fit.surface.tangency(rays)
-        gap_px = tangency.gap_m * scene.patch.focal_px / np.maximum(tangency.depth_m, 1e-9)
-        beyond = gap_px > (lead.sight.window_px - 1) / 2
-        explained = np.abs(lead.residual) < TUKEY * lead.sigma
-        costs = np.where(beyond, np.where(explained, TUKEY**2 / 6, 0.0), costs)
+        gap_m, depth_m = fit.surface.gap(rays)
+        gap_px = gap_m * scene.patch.focal_px / np.maximum(depth_m, 1e-9)
+        costs = np.where(gap_px > (lead.sight.window_px - 1) / 2, TUKEY**2 / 6, costs)
     cost = lead.likeness.independent_share * float(costs.sum())
     for outline, share in lead.outlines:
         cost += share * float(tukey(outline.predict(fit.surface).residual)[0].sum())

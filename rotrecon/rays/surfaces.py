@@ -141,14 +141,31 @@ class Lateral:
         a[np.abs(a) < FLANK] = FLANK
         return turned[:3], origin, _Roots(a, b, float(origin[0] ** 2 + origin[1] ** 2 - radius**2))
 
+    def meet(self, rays: Rays) -> tuple[Floats, Bools]:
+        """Depth (N,) and hits (N,) of rays, as `trace` has them."""
+        _, _, depth, _, hit = self._met(rays)
+        return depth, hit
+
     def trace(self, rays: Rays) -> Trace:
         """Where rays meet it; parameters: shift across, shift toward the camera, turn by each, radius, slope."""
+        turned, origin, depth, root, hit = self._met(rays)
+        return Trace(self._gradient(*self._point(turned, origin, depth)), -self.side / root, depth, hit)
+
+    def _met(self, rays: Rays) -> tuple[Floats, Floats, Floats, Floats, Bools]:
+        """Directions and origin in the surface's own coordinates; depths, roots and hits."""
         turned, origin, roots = self._quadratic(rays)
         grazing = np.abs(roots.b)
         grazing *= 2 * GRAZING_PX / self.focal_px
         grazing *= np.abs(self._radius_at(origin[2] + roots.nearest_m * turned[2])) if self.slope else self.radius_m
-        depth, root, hit = roots.depth(self.side, grazing)
-        return Trace(self._gradient(*self._point(turned, origin, depth)), -self.side / root, depth, hit)
+        return turned, origin, *roots.depth(self.side, grazing)
+
+    def gap(self, rays: Rays) -> tuple[Floats, Floats]:
+        """How far rays pass outside it, and the depth of their nearest points, both (N,); as `tangency` has them."""
+        turned, origin, roots = self._quadratic(rays)
+        depth = roots.nearest_m
+        x, y, h = self._point(turned, origin, depth)
+        radius = self._radius_at(h)
+        return (x * x + y * y - radius * radius) / (2 * radius), depth
 
     def tangency(self, rays: Rays) -> Tangency:
         """How far rays pass outside it."""
@@ -156,7 +173,7 @@ class Lateral:
         depth = roots.nearest_m
         x, y, h = self._point(turned, origin, depth)
         radius = self._radius_at(h)
-        gap = (x**2 + y**2 - radius**2) / (2 * radius)
+        gap = (x * x + y * y - radius * radius) / (2 * radius)
         return Tangency(self._gradient(x, y, h), 1.0 / radius, gap, depth)
 
     def _point(self, turned: Floats, origin: Floats, depth: Floats) -> Floats:
@@ -241,14 +258,27 @@ class Ball:
 
     def trace(self, rays: Rays) -> Trace:
         """Where rays meet it; parameters: the centre's three coordinates and the radius."""
-        roots = self._quadratic(rays)
-        grazing = (2 * GRAZING_PX / self.focal_px * self.radius_m) * np.abs(roots.b)
-        depth, root, hit = roots.depth(self.side, grazing)
+        depth, root, hit = self._met(rays)
         gradient = np.empty((4, len(depth)))
         np.multiply(rays, -depth, out=gradient[:3])
         gradient[:3] += self.center_m[:, None]
         gradient[3] = -self.radius_m
         return Trace(gradient, -self.side / root, depth, hit)
+
+    def meet(self, rays: Rays) -> tuple[Floats, Bools]:
+        """See `Lateral.meet`."""
+        depth, _, hit = self._met(rays)
+        return depth, hit
+
+    def _met(self, rays: Rays) -> tuple[Floats, Floats, Bools]:
+        """Depths, roots and hits."""
+        roots = self._quadratic(rays)
+        return roots.depth(self.side, (2 * GRAZING_PX / self.focal_px * self.radius_m) * np.abs(roots.b))
+
+    def gap(self, rays: Rays) -> tuple[Floats, Floats]:
+        """See `Lateral.gap`."""
+        tangency = self.tangency(rays)
+        return tangency.gap_m, tangency.depth_m
 
     def tangency(self, rays: Rays) -> Tangency:
         """How far rays pass outside it."""

@@ -68,7 +68,7 @@ class Looks:
         change = change_m[self.place]
         unknown = np.isnan(change)
         radius = np.maximum(self.radius + np.where(unknown, 0.0, change), SMALLEST_M)
-        depth, root, _ = self.surface.meet(self.lines, self.height, radius, self.slope)
+        depth, root, _ = self.surface.meet_cone(self.lines, self.height, radius, self.slope)
         square, _, _ = self.lines.quadratic(self.height, radius, self.slope)
         grazing = root**2 < (1 - self.guard**2) * np.abs(square) * radius**2
         scale = -self.surface.side / (root * self.noise.sigma_m(depth))
@@ -154,7 +154,7 @@ def grazes_at(surface: Turned, outlines: tuple[tuple[Outline, float], ...], heig
         return None
     rays = np.concatenate([outline.rays for outline, _ in outlines], axis=1)
     sigma_px = np.concatenate([outline.sigma_px / np.sqrt(share) for outline, share in outlines])
-    depth = surface.tangency(rays).depth_m
+    _, depth = surface.gap(rays)
     height = Lines.of(surface, rays).height(depth)
     kept = _within(height, heights_m) & (depth > 0)
     rays, height = rays[:, kept], height[kept]

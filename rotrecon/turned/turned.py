@@ -84,6 +84,16 @@ class Turned(Lateral):
         At the meeting point the surface and its tangent cone agree in place and in normal, and so in all derivatives.
         """
         lines = Lines.of(self, rays)
+        depth, root, hit = self._met_lines(lines)
+        return Trace(self._by_parameters(lines, depth), -self.side / root, depth, hit)
+
+    def meet(self, rays: Rays) -> tuple[Floats, Bools]:
+        """See `Lateral.meet`."""
+        depth, _, hit = self._met_lines(Lines.of(self, rays))
+        return depth, hit
+
+    def _met_lines(self, lines: Lines) -> tuple[Floats, Floats, Bools]:
+        """Depths, roots and hits (N,)."""
         depth, root, hit = self._settled(lines, self._first_guess(lines))
         for end_m in (self.low_m, self.high_m):
             # past a narrow part a ray may meet a wider one
@@ -97,7 +107,7 @@ class Turned(Lateral):
             for values, other in zip((depth, root, hit), others, strict=True):
                 values[missed[better]] = other[better]
         self._continue(lines, depth, root, hit)
-        return Trace(self._by_parameters(lines, depth), -self.side / root, depth, hit)
+        return depth, root, hit
 
     def _continue(self, lines: Lines, depth: Floats, root: Floats, hit: Bools) -> None:
         """Depths and roots of rays that miss and were led far away, as if they missed the nearest cylinder."""
@@ -109,18 +119,18 @@ class Turned(Lateral):
         passing = lines.chosen(lost.astype(np.int32))
         nearest = np.clip(passing.height(-passing.mixed / passing.square), self.low_m, self.high_m)
         radius = self.curve(nearest)[0]
-        depth[lost], root[lost], _ = self.meet(passing, nearest, radius, np.zeros_like(radius))
+        depth[lost], root[lost], _ = self.meet_cone(passing, nearest, radius, np.zeros_like(radius))
 
     def _settled(self, lines: Lines, height: Floats) -> tuple[Floats, Floats, Bools]:
         """Depth, root of the discriminant and hits of rays, from cone to cone from a first guess of the heights."""
-        depth, root, hit = self.meet(lines, height, *self.curve(height))
+        depth, root, hit = self.meet_cone(lines, height, *self.curve(height))
         before = np.zeros_like(height)
         for _ in range(MEETINGS):
             step = lines.height(depth) - height
             # near a limb the heights may swing about the right one
             step = np.where(step * before < 0, step / 2, step)
             height, before = height + step, step
-            depth, root, hit = self.meet(lines, height, *self.curve(height))
+            depth, root, hit = self.meet_cone(lines, height, *self.curve(height))
             if np.abs(step)[hit].max(initial=0.0) < MET_M:
                 break
         return depth, root, hit
@@ -128,10 +138,10 @@ class Turned(Lateral):
     def _first_guess(self, lines: Lines) -> Floats:
         """Heights (N,) at which rays meet the cone of the straight line."""
         at_zero = np.zeros_like(lines.square)
-        depth, _, _ = self.meet(lines, at_zero, at_zero + self.radius_m, at_zero + self.slope)
+        depth, _, _ = self.meet_cone(lines, at_zero, at_zero + self.radius_m, at_zero + self.slope)
         return np.clip(lines.height(depth), self.low_m, self.high_m)
 
-    def meet(self, lines: Lines, height: Floats, radius: Floats, slope: Floats) -> tuple[Floats, Floats, Bools]:
+    def meet_cone(self, lines: Lines, height: Floats, radius: Floats, slope: Floats) -> tuple[Floats, Floats, Bools]:
         """Depth, root of the discriminant, and hits of rays with cones of these radii and slopes at these heights.
 
         Rays that miss are continued as those of `Lateral`.
@@ -154,13 +164,21 @@ class Turned(Lateral):
         np.multiply(self.basis(height), -radius, out=columns[AXIS_PARAMETERS:])
         return columns
 
+    def gap(self, rays: Rays) -> tuple[Floats, Floats]:
+        """See `Lateral.gap`."""
+        return self._passing(*self._nearest(rays))[:2]
+
     def tangency(self, rays: Rays) -> Tangency:
         """How far rays pass outside it."""
         lines, depth = self._nearest(rays)
+        gap, _, radius = self._passing(lines, depth)
+        return Tangency(self._by_parameters(lines, depth), 1.0 / radius, gap, depth)
+
+    def _passing(self, lines: Lines, depth: Floats) -> tuple[Floats, Floats, Floats]:
+        """Gap, depth and radius (N,) where rays are nearest to the surface."""
         x, y = lines.aside(depth)
         radius = self.curve(lines.height(depth))[0]
-        gap = (x**2 + y**2 - radius**2) / (2 * radius)
-        return Tangency(self._by_parameters(lines, depth), 1.0 / radius, gap, depth)
+        return (x**2 + y**2 - radius**2) / (2 * radius), depth, radius
 
     def off_middle(self, rays: Rays) -> Floats:
         """How far beside the axis rays (3, N) pass, over the radius there: 1 at the outline."""

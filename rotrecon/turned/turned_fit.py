@@ -161,7 +161,7 @@ def _smoothed(axis: _Axis, task: _Task) -> RayFit:
     residual = depths_of(patch, pixels).predict(surface).residual
     free = np.concatenate([task.free, curve[AXIS_PARAMETERS:]])
     sight = Sight(guard=axis.guard)
-    return RayFit(surface, sight, task.outlines, free, pixels, residual, axis.sigma, axis.likeness, covariance)
+    return RayFit(surface, sight, task.outlines, free, pixels, residual, axis.sigma, axis.likeness, lambda: covariance)
 
 
 def _joint(axis: Floats, information: Floats) -> Floats:
