@@ -7,7 +7,7 @@ import numpy as np
 from rotrecon.arrays import Bools, Cloud, Floats, Indices, freeze
 from rotrecon.axis import Axis, SpaceSections, cut_in_space
 from rotrecon.circles import SectionCircles, SectionState, circumcircles
-from rotrecon.rays.fitting import TO_SIGMA
+from rotrecon.rays.fitting import MEDIAN_LOSS, TO_SIGMA
 from rotrecon.rays.patch import Patch
 from rotrecon.rays.ray_fit import RayFit
 from rotrecon.rays.surfaces import Ball, Surface
@@ -22,8 +22,6 @@ ODD_WIDTHS = 1.3
 """Widths of its interval by which the radius of an odd section is off."""
 ODD_RADIUS = 0.1
 """Share of the radius within which it is never odd."""
-MEDIAN_LOSS = 1.2533
-"""Standard deviation of a median over that of a mean."""
 
 
 @dataclass(frozen=True, eq=False)

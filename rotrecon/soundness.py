@@ -5,6 +5,7 @@ from dataclasses import dataclass
 import numpy as np
 
 from rotrecon.arrays import Bools, Floats, freeze
+from rotrecon.rays.fitting import MEDIAN_LOSS, TO_SIGMA
 from rotrecon.rays.limbs import limbs_of
 from rotrecon.rays.patch import Patch
 from rotrecon.rays.ray_fit import RayFit
@@ -77,14 +78,22 @@ def _roughness(fit: RayFit, sigma_m: Floats) -> float:
 
 
 def _pattern(fit: RayFit, points: Floats, behind_m: Floats) -> float:
-    """Root mean square of the median residual (n,) of bins of the angle at which points (3, n) are hit."""
+    """Root mean square of the median residual (n,) of bins of the angle at which points (3, n) are hit, less noise."""
     angle = _angle(fit, points)
     widest = min(PATTERN_RAD, float(np.arcsin(min(fit.sight.guard, 1.0))))
     edges = np.linspace(-widest, widest, PATTERN_BINS + 1)
     number = np.digitize(angle, edges) - 1
     bins = [behind_m[number == each] for each in range(PATTERN_BINS)]
-    medians = [float(np.median(one)) for one in bins if len(one) >= PATTERN_FEWEST]
-    return float(np.sqrt(np.mean(np.square(medians)))) / fit.surface.size_m if medians else np.inf
+    bins = [one for one in bins if len(one) >= PATTERN_FEWEST]
+    if not bins:
+        return np.inf
+    medians = np.array([np.median(one) for one in bins])
+    noise = [
+        (MEDIAN_LOSS * TO_SIGMA * np.median(np.abs(one - middle))) ** 2 / len(one)
+        for one, middle in zip(bins, medians, strict=True)
+    ]
+    # over a narrower range the same flats show less
+    return PATTERN_RAD / widest * float(np.sqrt(max(np.mean(medians**2) - np.mean(noise), 0.0))) / fit.surface.size_m
 
 
 def _angle(fit: RayFit, points: Floats) -> Floats:

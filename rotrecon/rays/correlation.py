@@ -13,6 +13,8 @@ LENGTHS_PX = np.array([0.7, 1.0, 1.5, 2.0, 3.0, 4.0, 5.0, 6.0, 8.0, 10.0, 12.0])
 """Correlation lengths that are told apart."""
 FEWEST_PAIRS = 30
 """Fewer say nothing of a lag."""
+SIGNIFICANT = 3.0
+"""Standard deviations below which a likeness is one by chance: a small one over a long way would count for much."""
 
 
 @dataclass(frozen=True)
@@ -46,6 +48,7 @@ def likeness_of(residual: Floats) -> Likeness:
     variance = float(np.vdot(value, value)) / max(int(np.count_nonzero(known)), 1)
     lags: list[float] = []
     alike: list[float] = []
+    chance: list[float] = []
     for lag in LAGS:
         total = pairs = 0.0
         for first, second in ((np.s_[lag:], np.s_[:-lag]), (np.s_[:, lag:], np.s_[:, :-lag])):
@@ -54,14 +57,18 @@ def likeness_of(residual: Floats) -> Likeness:
         if pairs >= FEWEST_PAIRS and variance > 0:
             lags.append(lag)
             alike.append(total / pairs / variance)
-    return _fitted(np.array(lags), np.array(alike))
+            chance.append(1.0 / pairs)
+    return _fitted(np.array(lags), np.array(alike), np.array(chance))
 
 
-def _fitted(lags: Floats, alike: Floats) -> Likeness:
+def _fitted(lags: Floats, alike: Floats, chance: Floats) -> Likeness:
+    """The likeness that explains what is alike at some lags, each with the variance that it has by chance."""
     if len(lags) == 0:
         return Likeness(0.0, 0.0)
     shapes = np.exp(-np.square(lags / LENGTHS_PX[:, None]))
     squares = np.maximum((shapes**2).sum(axis=1), np.finfo(float).tiny)
     share = (shapes @ alike / squares).clip(0.0, 1.0)
     best = int(np.square(alike - share[:, None] * shapes).sum(axis=1).argmin())
+    if share[best] < SIGNIFICANT * np.sqrt((shapes[best] ** 2 * chance).sum()) / squares[best]:
+        return Likeness(0.0, 0.0)
     return Likeness(float(share[best]), float(LENGTHS_PX[best]))

@@ -18,6 +18,8 @@ CAUCHY = 2.385
 """The same for the heavy-tailed loss that comes first, whose pull never ends (Holland and Welsch 1977)."""
 TO_SIGMA = 1.4826
 """Standard deviation over median magnitude, for normal errors."""
+MEDIAN_LOSS = 1.2533
+"""Standard deviation of a median over that of a mean."""
 FIRST_DAMPING, MOST_DAMPING = 1e-3, 1e6
 LARGEST_M = 100.0
 """A radius beyond this is that of nothing an arm could hold."""
