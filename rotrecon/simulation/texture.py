@@ -86,18 +86,17 @@ def value_noise(cells: Floats, lattice: Cloud) -> Cloud:
     floor = np.floor(cells)
     part = (cells - floor).astype(np.float32)
     part = part * part * (3 - 2 * part)
-    whole = floor.astype(np.int64)
-    strides = [size**power for power in reversed(range(dimensions))]
+    whole = floor.astype(np.int32)
+    corners = [np.zeros(len(cells), dtype=np.int32)]
+    for axis in range(dimensions):
+        low, high = whole[:, axis] & (size - 1), (whole[:, axis] + 1) & (size - 1)
+        corners = [corner * size + step for corner in corners for step in (low, high)]
     flat = lattice.reshape(-1)
-    total = np.zeros(len(cells), dtype=np.float32)
-    for corner in product((0, 1), repeat=dimensions):
-        index = np.zeros(len(cells), dtype=np.int64)
-        weight = np.ones(len(cells), dtype=np.float32)
-        for axis, step in enumerate(corner):
-            index += ((whole[:, axis] + step) & (size - 1)) * strides[axis]
-            weight *= part[:, axis] if step else 1 - part[:, axis]
-        total += weight * flat[index]
-    return total
+    values = [flat[corner] for corner in corners]
+    for axis in reversed(range(dimensions)):
+        pairs = zip(values[::2], values[1::2], strict=True)
+        values = [low + part[:, axis] * (high - low) for low, high in pairs]
+    return values[0]
 
 
 def linear_light(colours: list[tuple[int, int, int]]) -> Floats:
