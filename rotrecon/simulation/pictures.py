@@ -98,7 +98,8 @@ def _pixels(lens: Lens, part: Window) -> _Pixels:
         by_u, by_v = (2 * (_directions(lens, grid + step) - centre) for step in ((0.5, 0.0), (0.0, 0.5)))
     else:
         by_u, by_v = (np.broadcast_to(step, centre.shape) for step in np.diag(1 / np.diag(camera.K)[:2]))
-    return _Pixels(*centre.T.copy(), by_u[:, 0], by_v[:, 0], by_u[:, 1], by_v[:, 1])
+    x, y = centre.T.copy()
+    return _Pixels(x, y, by_u[:, 0], by_v[:, 0], by_u[:, 1], by_v[:, 1])
 
 
 def _directions(lens: Lens, pixels_px: Floats) -> Floats:

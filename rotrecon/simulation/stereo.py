@@ -28,6 +28,8 @@ from rotrecon.simulation.simulate import (
 from rotrecon.simulation.surfaces import Texture, textured
 
 VIEWS_CAMERA = PinholeCamera(1280, 720, np.array([[900.0, 0, 639.5], [0, 900.0, 359.5], [0, 0, 1]]))
+VIEW_STEP_M = 0.1
+"""Between neighbouring views: the width of common stereo heads."""
 WIDEST_BASELINE_M = 0.3
 """Objects are placed so that a camera so far to the right still has them in its picture."""
 USUAL_FLAWS = Flaws()

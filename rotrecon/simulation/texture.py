@@ -96,7 +96,7 @@ def value_noise(cells: Floats, lattice: Cloud) -> Cloud:
     for axis in reversed(range(dimensions)):
         pairs = zip(values[::2], values[1::2], strict=True)
         values = [low + part[:, axis] * (high - low) for low, high in pairs]
-    return values[0]
+    return np.asarray(values[0], dtype=np.float32)
 
 
 def linear_light(colours: list[tuple[int, int, int]]) -> Floats:
