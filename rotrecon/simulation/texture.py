@@ -2,7 +2,7 @@
 
 from dataclasses import dataclass
 from itertools import product
-from typing import Protocol
+from typing import Any, Protocol
 
 import numpy as np
 
@@ -87,16 +87,16 @@ def value_noise(cells: Floats, lattice: Cloud) -> Cloud:
     part = (cells - floor).astype(np.float32)
     part = part * part * (3 - 2 * part)
     whole = floor.astype(np.int32)
-    corners = [np.zeros(len(cells), dtype=np.int32)]
+    corners: list[tuple[Any, Any]] = [(np.int32(0), np.float32(1))]
     for axis in range(dimensions):
         low, high = whole[:, axis] & (size - 1), (whole[:, axis] + 1) & (size - 1)
-        corners = [corner * size + step for corner in corners for step in (low, high)]
+        sides = ((low, 1 - part[:, axis]), (high, part[:, axis]))
+        corners = [(index * size + step, weight * share) for index, weight in corners for step, share in sides]
     flat = lattice.reshape(-1)
-    values = [flat[corner] for corner in corners]
-    for axis in reversed(range(dimensions)):
-        pairs = zip(values[::2], values[1::2], strict=True)
-        values = [low + part[:, axis] * (high - low) for low, high in pairs]
-    return np.asarray(values[0], dtype=np.float32)
+    total = np.zeros(len(cells), dtype=np.float32)
+    for index, weight in corners:
+        total += weight * flat[index]
+    return total
 
 
 def linear_light(colours: list[tuple[int, int, int]]) -> Floats:
