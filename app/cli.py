@@ -10,6 +10,7 @@ import typer
 
 from app.describe import describe, describe_result
 from app.drawing_text import parse_area, parse_axis, stroke_text
+from app.flaw_text import FLAW_HELP, parse_flaws
 from app.host import HostError
 from rotrecon.answer import answer, cannot
 from rotrecon.drawing import Constraints, Direction, Drawing, DrawingError
@@ -26,6 +27,8 @@ from rotrecon.scene.intrinsics import Intrinsics
 from rotrecon.scene.reading import read_scene
 from rotrecon.settings import Method, Settings
 from rotrecon.simulation.simulate import simulate as simulate_object
+from rotrecon.simulation.stereo import VIEW_STEP_M, simulate_views
+from rotrecon.simulation.surfaces import Texture
 from rotrecon.simulation.truth import TRUTH_FILE, write_simulated
 from rotrecon.tool_table import ToolTableError, default_tools, read_tools
 
@@ -163,9 +166,22 @@ def simulate(
         Literal["leg", "ball", "wire", "pipe", "cone"], typer.Option("--object", help="What stands in it.")
     ] = DEMO,
     seed: Annotated[int, typer.Option(min=0, help="Another one gives another pose.")] = 0,
+    views: Annotated[
+        int | None, typer.Option(min=2, max=4, help="Pictures 0.1 m apart in place of a frame with depth.")
+    ] = None,
+    texture: Annotated[Texture, typer.Option(help="Of the object, in views.")] = "fine",
+    flaw: Annotated[list[str] | None, typer.Option(metavar="NAME=AMOUNT", help=FLAW_HELP)] = None,
 ) -> None:
     """Write a scene whose truth is known, and the truth beside it."""
-    simulated = simulate_object(object_, seed)
+    if views is None:
+        if flaw or texture != "fine":
+            raise typer.BadParameter("--texture and --flaw are of views; add --views 2")
+        simulated = simulate_object(object_, seed)
+    else:
+        baselines_m = [VIEW_STEP_M * number for number in range(views)]
+        simulated = simulate_views(
+            object_, seed, baselines_m=baselines_m, texture=texture, flaws=parse_flaws(flaw or [])
+        )
     write_simulated(out, simulated)
     typer.echo(
         f"wrote {out}: a {object_}, {simulated.diameter_mm:g} mm in diameter; its truth is in {out / TRUTH_FILE}"

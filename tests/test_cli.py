@@ -10,6 +10,7 @@ import pytest
 
 from app.cli import main
 from rotrecon.frame import Frame
+from rotrecon.scene.reading import read_scene
 from rotrecon.scene.writing import SceneRecord, write_scene
 from rotrecon.settings import Method, Settings
 from rotrecon.simulation.simulate import simulate
@@ -164,6 +165,28 @@ def test_simulate_writes_a_scene_that_fit_reads_and_never_over_another(rotrecon,
     assert code == 2
     assert "name a new folder" in err
     assert sorted((path.name, path.stat().st_mtime_ns) for path in (tmp_path / "ball").iterdir()) == before
+
+
+def test_simulate_writes_views_and_refuses_flaws_it_does_not_know(rotrecon, tmp_path):
+    flaws = ("--flaw", "blur=1", "--flaw", "shift=2", "--flaw", "occluder")
+    code, out, _ = rotrecon(
+        "simulate", tmp_path / "wire", "--object", "wire", "--views", 2, "--texture", "weak", *flaws
+    )
+    assert code == 0
+    assert "25 mm" in out
+    assert len(read_scene(tmp_path / "wire").views) == 2
+    truth = json.loads((tmp_path / "wire" / "truth.json").read_text())
+    assert truth["texture"] == "weak"
+    stated = {name: truth["flaws"][name] for name in ("blur_px", "pose_error_m", "occluder", "neighbour", "gain")}
+    assert stated == {"blur_px": 1.0, "pose_error_m": 0.002, "occluder": True, "neighbour": False, "gain": 1.0}
+    for flaw in ("haze=1", "blur", "blur=much", "blur=-1", "occluder=2", "gain=nan"):
+        code, _, err = rotrecon("simulate", tmp_path / "none", "--views", 2, "--flaw", flaw)
+        assert code == 2, flaw
+        assert "flaw" in err
+    code, _, err = rotrecon("simulate", tmp_path / "none", "--texture", "weak")
+    assert code == 2
+    assert "--views" in err
+    assert not (tmp_path / "none").exists()
 
 
 def test_places_that_cannot_be_written_are_named(rotrecon, scene, tmp_path):

@@ -4,7 +4,16 @@ import numpy as np
 import pytest
 
 from rotrecon.primitives import Frustum, Sphere
-from rotrecon.simulation.raycast import Box, Plane, Prism, Shape, Stretched, first_hit, outward_normals
+from rotrecon.simulation.raycast import (
+    Box,
+    Plane,
+    Prism,
+    Shape,
+    Stretched,
+    bounding_radius_m,
+    first_hit,
+    outward_normals,
+)
 
 AXIS = np.array([0.0, 0.0, 1.0])
 CYLINDER = Frustum("cylinder", np.zeros(3), AXIS, 0.4, 0.05)
@@ -57,6 +66,8 @@ def test_a_hit_is_on_the_surface(solid: Shape) -> None:
     assert met.mean() > 0.2
     points = (origins + np.where(met, depth, 0)[:, None] * directions)[met]
     assert np.abs(outside_by(solid, points)).max() < 1e-9
+    farthest = np.linalg.norm(points, axis=1).max()
+    assert 0.5 * bounding_radius_m(solid) < farthest <= bounding_radius_m(solid)
 
 
 @pytest.mark.parametrize("solid", SOLIDS)

@@ -44,7 +44,11 @@ def write_scene(folder: Path, record: SceneRecord, beside: Mapping[str, bytes] =
     written or would not be read again.
     """
     folder = folder.resolve()
-    files = _scene_files(folder, record)
+    write_folder(folder, _scene_files(folder, record), beside)
+
+
+def write_folder(folder: Path, files: Mapping[str, bytes], beside: Mapping[str, bytes]) -> None:
+    """Write the files of a scene and those beside them, whole or not at all; raises SceneError, as `write_scene`."""
     if clash := [name for name in beside if name in files or Path(name).name != name]:
         raise ValueError(f"{clash[0]} cannot be a file beside the scene's own")
     aside = folder.with_name(f".{folder.name}.{secrets.token_hex(4)}.partial")

@@ -66,6 +66,24 @@ def first_hit(shape: Shape, origins_m: Floats, directions: Floats) -> Floats:
         return np.minimum(_lateral_hit(shape, origins_m, directions), _cap_hit(shape, origins_m, directions))
 
 
+def bounding_radius_m(shape: Shape) -> float:
+    """Radius of a sphere about the origin that holds all of a shape, a little larger than need be."""
+    if isinstance(shape, Plane):
+        return float("inf")
+    if isinstance(shape, Sphere):
+        radius_m = shape.radius_m
+    elif isinstance(shape, Box):
+        radius_m = float(np.linalg.norm(shape.half_lengths_m))
+    elif isinstance(shape, Prism):
+        widest = shape.inradius_m + abs(np.tan(shape.half_angle_rad)) * shape.length_m / 2
+        radius_m = float(np.hypot(widest / np.cos(np.pi / shape.sides), shape.length_m / 2))
+    elif isinstance(shape, Stretched):
+        radius_m = max(shape.scale) * bounding_radius_m(shape.shape)
+    else:
+        radius_m = float(np.hypot(shape.radius_at(np.array(shape.ends)).max(), shape.length_m / 2))
+    return 1.001 * radius_m
+
+
 def outward_normals(shape: Shape, points_m: Floats) -> Floats:
     """Unit normals (N, 3) at points (N, 3) of the surface, in body coordinates; a plane's is its z axis."""
     if isinstance(shape, Plane):

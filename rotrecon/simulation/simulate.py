@@ -102,9 +102,9 @@ def simulate(
     if object_name not in OBJECTS:
         raise ValueError(f"there is no object {object_name!r} to simulate; there are {', '.join(OBJECTS)}")
     poses, looks, errors = np.random.default_rng([seed, *object_name.encode()]).spawn(3)
-    T_base_camera = _camera_pose(poses)
-    T_camera_body = _object_pose(OBJECTS[object_name].shape, camera, poses)
-    world = _world(OBJECTS[object_name], camera, T_base_camera, T_camera_body, looks)
+    T_base_camera = camera_pose(poses)
+    T_camera_body = object_pose(OBJECTS[object_name].shape, camera, DEFAULT_NOISE.baseline_m, poses)
+    world = world_around(OBJECTS[object_name], camera, T_base_camera, T_camera_body, looks)
     view = render(world, camera, T_base_camera, supersampling)
     depth_m = view.depth_m if noise is None else stereo_depth(view, noise, errors)
     stated = None if noise is None else StereoNoise(noise.baseline_m, noise.disparity_sigma_px)
@@ -121,7 +121,7 @@ def simulate(
     )
 
 
-def _camera_pose(rng: np.random.Generator) -> Floats:
+def camera_pose(rng: np.random.Generator) -> Floats:
     """A pose (4, 4) of the arm's camera over a base whose z is up: it looks ahead and a little down."""
     yaw, pitch, roll = np.deg2rad(rng.uniform([-40, 8, -6], [40, 20, 6]))
     forward = np.array([np.cos(pitch) * np.cos(yaw), np.cos(pitch) * np.sin(yaw), -np.sin(pitch)])
@@ -134,8 +134,8 @@ def _camera_pose(rng: np.random.Generator) -> Floats:
     return pose
 
 
-def _object_pose(shape: Simple, camera: PinholeCamera, rng: np.random.Generator) -> Floats:
-    """A pose (4, 4) of the object before the camera that keeps it in both pictures of a stereo camera."""
+def object_pose(shape: Simple, camera: PinholeCamera, baseline_m: float, rng: np.random.Generator) -> Floats:
+    """A pose (4, 4) of the object before the camera that keeps it in the pictures of a second camera at +x, too."""
     size = np.array([camera.width, camera.height])
     for _ in range(ATTEMPTS):
         depth = rng.uniform(*DISTANCE_M)
@@ -145,23 +145,23 @@ def _object_pose(shape: Simple, camera: PinholeCamera, rng: np.random.Generator)
         pose = np.eye(4)
         pose[:3, :3] = np.stack([*basis_across(axis, -middle), axis], axis=1)
         pose[:3, 3] = middle
-        if _fits(shape.moved(pose), camera):
+        if _fits(shape.moved(pose), camera, baseline_m):
             return pose
     raise ValueError(f"an object of this size does not fit a picture of {size[0]} x {size[1]} px at 0.6 to 1.2 m")
 
 
-def _fits(solid: Simple, camera: PinholeCamera) -> bool:
+def _fits(solid: Simple, camera: PinholeCamera, baseline_m: float) -> bool:
     outline = outline_px(solid, camera)
     if not np.isfinite(outline).all():
         return False
     drawn = np.concatenate([outline, ideal_drawing(solid, camera).area.vertices_px])
-    disparity_px = camera.focal_px * DEFAULT_NOISE.baseline_m / _depth_range_m(solid)[0]
+    disparity_px = camera.focal_px * baseline_m / depth_range_m(solid)[0]
     low = np.array([BORDER_PX + disparity_px, BORDER_PX])
     high = np.array([camera.width, camera.height]) - 1 - BORDER_PX
     return bool((drawn >= low).all() and (drawn <= high).all())
 
 
-def _depth_range_m(solid: Simple) -> tuple[float, float]:
+def depth_range_m(solid: Simple) -> tuple[float, float]:
     """Least and greatest z of a solid."""
     middle, lean = float(solid.center_m[2]), float(solid.direction[2])
     if isinstance(solid, Sphere):
@@ -171,7 +171,7 @@ def _depth_range_m(solid: Simple) -> tuple[float, float]:
     return float((middle + along * lean - rim).min()), float((middle + along * lean + rim).max())
 
 
-def _world(
+def world_around(
     model: ObjectModel,
     camera: PinholeCamera,
     T_base_camera: Floats,
@@ -180,7 +180,7 @@ def _world(
 ) -> World:
     """The object, a wall and the ground behind it, and a lamp over the operator's shoulder."""
     solid = model.shape.moved(T_camera_body)
-    farthest = _depth_range_m(solid)[1]
+    farthest = depth_range_m(solid)[1]
     ahead = T_base_camera[:3, 2] * [1, 1, 0]
     turn = rng.uniform(-0.3, 0.3)
     ahead = np.array([ahead[0] - turn * ahead[1], ahead[1] + turn * ahead[0], 0.0])

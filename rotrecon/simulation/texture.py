@@ -2,7 +2,7 @@
 
 from dataclasses import dataclass
 from itertools import product
-from typing import Protocol
+from typing import Any, Protocol
 
 import numpy as np
 
@@ -86,16 +86,15 @@ def value_noise(cells: Floats, lattice: Cloud) -> Cloud:
     floor = np.floor(cells)
     part = (cells - floor).astype(np.float32)
     part = part * part * (3 - 2 * part)
-    whole = floor.astype(np.int64)
-    strides = [size**power for power in reversed(range(dimensions))]
+    whole = floor.astype(np.int32)
+    corners: list[tuple[Any, Any]] = [(np.int32(0), np.float32(1))]
+    for axis in range(dimensions):
+        low, high = whole[:, axis] & (size - 1), (whole[:, axis] + 1) & (size - 1)
+        sides = ((low, 1 - part[:, axis]), (high, part[:, axis]))
+        corners = [(index * size + step, weight * share) for index, weight in corners for step, share in sides]
     flat = lattice.reshape(-1)
     total = np.zeros(len(cells), dtype=np.float32)
-    for corner in product((0, 1), repeat=dimensions):
-        index = np.zeros(len(cells), dtype=np.int64)
-        weight = np.ones(len(cells), dtype=np.float32)
-        for axis, step in enumerate(corner):
-            index += ((whole[:, axis] + step) & (size - 1)) * strides[axis]
-            weight *= part[:, axis] if step else 1 - part[:, axis]
+    for index, weight in corners:
         total += weight * flat[index]
     return total
 
