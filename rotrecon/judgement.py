@@ -13,6 +13,7 @@ from rotrecon.rays.starts import robust_line
 from rotrecon.rays.surfaces import Lateral
 from rotrecon.settings import Settings
 from rotrecon.soundness import Soundness
+from rotrecon.two_objects import shows_two
 
 
 def too_little(scene: Scene, reachable: bool, settings: Settings) -> FitFailure | None:
@@ -36,7 +37,20 @@ def too_little(scene: Scene, reachable: bool, settings: Settings) -> FitFailure 
 
 
 def failure_of(chosen: Ranked, soundness: Soundness, scene: Scene, settings: Settings) -> FitFailure | None:
-    """Why a fit is no result: flat, too short an arc, not along the stroke, not round."""
+    """Why a fit is no result: flat, too short an arc, not along the stroke, not round, two things at once."""
+    failure = _failure_of(chosen, soundness, scene, settings)
+    if failure is None and soundness.pattern <= settings.doubtful_pattern:
+        return None
+    if failure is not None and failure.reason == FailureReason.CONSTRAINED:
+        return failure
+    depth_m = float(np.nanmedian(scene.depth_m))
+    if shows_two(scene.depth_m, depth_m / scene.patch.focal_px):
+        advice = "two things stand side by side in what is drawn; draw the area round one of them"
+        return FitFailure(FailureReason.TWO_OBJECTS, advice)
+    return failure
+
+
+def _failure_of(chosen: Ranked, soundness: Soundness, scene: Scene, settings: Settings) -> FitFailure | None:
     assert chosen.fit is not None
     surface = chosen.surface
     arc_deg = np.degrees(soundness.arc_rad)

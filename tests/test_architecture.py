@@ -29,7 +29,7 @@ TURNED = """
     turned.smoothness turned.turned_start turned.turned_fit
 """.split()
 JUDGED = """
-    intervals recognition soundness judgement section_radii by_rays
+    two_objects intervals recognition soundness judgement section_radii by_rays
 """.split()
 BY_RAYS = [*FITTED, *TURNED, *JUDGED]
 SHOWN = """

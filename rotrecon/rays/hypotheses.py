@@ -63,6 +63,8 @@ class Scene:
     """Of the segmented pixels."""
     length_m: float
     segments: CrossSegments
+    depth_m: Floats
+    """(S, W) of the segmented cells; NaN elsewhere."""
 
     def __post_init__(self) -> None:
         freeze(self)
@@ -74,7 +76,8 @@ def scene_of(camera: PinholeCamera, patch: Patch, segments: CrossSegments, kept:
     length_m = float(np.linalg.norm(np.ptp(edge.points_m, axis=0))) if len(edge.points_m) else 0.0
     usable = segments.inside & np.isfinite(depth_m)
     outline = mask_outline(segments, kept, usable, patch, ANY_GAP_PX)
-    return Scene(patch, edge, coarse_pixels(patch, segments, kept), outline, length_m, segments)
+    seen_m = np.where(kept, depth_m, np.nan)
+    return Scene(patch, edge, coarse_pixels(patch, segments, kept), outline, length_m, segments, seen_m)
 
 
 def hypotheses(scene: Scene, held: Held) -> dict[Shape, tuple[float, Surface]]:
