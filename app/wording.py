@@ -50,7 +50,9 @@ def certainty(answer: dict[str, Any]) -> str:
         return f"not certain: {', '.join(names[:-1])} or {names[-1]}"
     if answer["method"] == "paper":
         return "not certain, no interval: the paper's method has no measure of either"
-    return "not certain"
+    if answer["kind"] == "revolution":
+        return "not certain: a solid of revolution may be anything round"
+    return "not certain" if answer["tool"] is None else "not certain: the interval is wide"
 
 
 def candidate_name(candidate: dict[str, Any]) -> str:

@@ -84,7 +84,10 @@ def test_intervals_at_the_terminal(result: Reconstruction) -> None:
 def test_doubts_about_the_kind_name_the_kinds(result: Reconstruction) -> None:
     assert certainty(sure_answer(result)) == "certain"
     assert certainty(sure_answer(result, certain=False)) == NOT_CERTAIN
-    assert certainty(sure_answer(result, certain=False, candidates=[])) == "not certain"
+    alone = sure_answer(result, certain=False, candidates=[])
+    assert certainty(alone | {"tool": None}) == "not certain"
+    assert certainty(alone) == "not certain: the interval is wide"
+    assert "anything round" in certainty(alone | {"kind": "revolution"})
     assert "the paper's method has no measure" in certainty(answer_of(result))
 
 

@@ -95,7 +95,7 @@ class Lateral:
     center_m: Floats
     """(3,) point on the axis."""
     turn: Floats
-    """(3, 3) rows: across, toward the camera, and the axis' direction."""
+    """(3, 3) rows: two across, at the start the second toward the camera, and the axis' direction; a rotation."""
     radius_m: float
     """At `center_m`."""
     slope: float
