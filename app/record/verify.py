@@ -21,7 +21,7 @@ class Fault:
 def verify(record: Record, kept: Head | None = None) -> Fault | None:
     """The first entry that is bad, or None for a record that is whole.
 
-    `kept` is a head that was noted elsewhere: without one, a tail that was cut off leaves a shorter chain that is whole.
+    `kept` is a head that was noted elsewhere: without one, a record whose tail was cut off is whole, and shorter.
     """
     previous, number, seen = BEFORE_THE_FIRST, 0, set[str]()
     for row in record.rows():
@@ -36,9 +36,7 @@ def verify(record: Record, kept: Head | None = None) -> Fault | None:
         if kept is not None and kept.id == number and kept.hash != previous:
             return Fault(number, "is not the one that the kept head was noted of: it was replaced since")
     if kept is not None and kept.id > number:
-        return Fault(
-            number + 1, f"is missing, and all up to {kept.id}, which the kept head ends with: they were cut off"
-        )
+        return Fault(number + 1, f"is missing, and all up to {kept.id}, the kept head's: the tail was cut off")
     return None
 
 
