@@ -3,7 +3,7 @@
 import json
 from contextlib import closing
 from pathlib import Path
-from typing import Annotated, Any, Literal, get_args
+from typing import Annotated, Any, Literal, NoReturn, get_args
 
 import typer
 
@@ -161,6 +161,6 @@ def _entry(record: Record, number: int) -> Written:
         _nothing(error)
 
 
-def _nothing(error: Exception) -> Any:
+def _nothing(error: Exception) -> NoReturn:
     typer.echo(f"rotrecon: {error}", err=True)
     raise typer.Exit(NOTHING) from error

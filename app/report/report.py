@@ -45,7 +45,7 @@ def report_html(decision: Decision) -> str:
         doubts=result.fit.doubts if isinstance(result.fit, Fit) else (),
         pictures=[(caption, Markup(url)) for caption, url in report_pictures(result)],
         chart=Markup(sections_svg(result)),
-        candidates=[(*candidate_row(one), _standing(one["possible"])) for one in answer["candidates"]],
+        candidates=[candidate_row(one) for one in answer["candidates"]],
         tools=_tools(decision.evidence.settings, answer),
         trail=[(entry, entry.content, _said(entry)) for entry in decision.trail],
     )
@@ -93,16 +93,12 @@ def _vector(numbers: list[float], of: str) -> str:
     return ", ".join(f"{number:.4f}" for number in numbers) + of
 
 
-def _standing(possible: bool | None) -> str:
-    return {True: "possible", False: "excluded", None: ""}[possible]
-
-
 def _tools(settings: Settings, answer: dict[str, Any]) -> list[tuple[str, str, str]]:
     """Every tool of the table: its name, what it takes, and what was said of it."""
     said = {tool.name: reason for tool in settings.tools for reason in answer["reasons"] if _is_of(reason, tool.name)}
     rows: list[tuple[str, str, str]] = []
     for tool in settings.tools:
-        verdict = said[tool.name].removeprefix(f"{tool.name}: ") if tool.name in said else "was not asked"
+        verdict = said[tool.name].removeprefix(f"{tool.name}: ") if tool.name in said else "not asked"
         takes = f"{', '.join(tool.takes)} of {tool.diameter_mm[0]:g} to {tool.diameter_mm[1]:g} mm"
         rows.append((tool.name, takes, "fits" if tool.name == answer["tool"] else verdict))
     return rows
