@@ -16,7 +16,7 @@ from hypothesis import strategies as st
 
 from app.bench.durability import killed_writers, problems_of
 from app.digest import digest_of_parts, frame_id
-from app.record.entries import BEFORE_THE_FIRST, Entry, Head
+from app.record.entries import BEFORE_THE_FIRST, Entry, Head, link
 from app.record.errors import NoSuchEntry, StoreError
 from app.record.store import FILE, Record
 from app.record.verify import verify
@@ -204,6 +204,17 @@ def test_entries_and_scenes_that_were_taken_out_or_exchanged_are_found(tmp_path,
     filled(tmp_path)
     tampered(tmp_path, statement)
     assert fault_of(tmp_path) == bad
+
+
+def test_an_entry_that_was_rewritten_with_a_hash_of_its_own_breaks_the_chain_after_it(tmp_path):
+    heads = filled(tmp_path)
+    forged = link(Entry("rejected", "eve"), heads[1], {})
+    values = (forged.body.decode(), forged.hash)
+    tampered(
+        tmp_path, "UPDATE entries SET body = ?, hash = ?, kind = 'rejected', digest = NULL WHERE id = 2", values=values
+    )
+    assert fault_of(tmp_path) == 3
+    assert fault_of(tmp_path, heads[2]) == 2
 
 
 def test_evidence_that_its_digest_is_not_of_is_found(record, tmp_path):
