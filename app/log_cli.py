@@ -10,7 +10,7 @@ import typer
 from app.describe import describe
 from app.record.entries import EntryKind, Head, Written
 from app.record.errors import NoSuchEntry
-from app.record.evidence import Difference, Replay, decision_of, evidence_of, replay
+from app.record.evidence import Difference, Replay, decision_of, evidence_of, replay, said_with
 from app.record.store import Record
 from app.record.verify import verify
 from app.writing import write_file
@@ -60,8 +60,7 @@ def show(number: Number, data: Data = None) -> None:
         typer.echo(_line(written))
         typer.echo(f"  hash {written.hash}\n  previous {content['previous']}\n  digest {content['digest'] or 'none'}")
         typer.echo(f"  {', '.join(f'{name} {version}' for name, version in content['versions'].items())}")
-        payload = {name: value for name, value in content["payload"].items() if name not in ("evidence", "answer")}
-        for name, value in payload.items():
+        for name, value in said_with(written).items():
             typer.echo(f"  {name}: {value if isinstance(value, str) else json.dumps(value)}")
         if "answer" in content["payload"]:
             typer.echo(describe(content["payload"]["answer"]))
@@ -90,7 +89,7 @@ def verify_(
 @log.command()
 def export(
     number: Number,
-    out: Annotated[Path, typer.Argument(metavar="OUT", help="The file to write, or a folder to write it in.")],
+    out: Annotated[Path, typer.Argument(metavar="[OUT]", help="A file, or a folder to write it in.")] = Path(),
     format_: Annotated[
         Literal["html", "json", "csv", "ply", "glb", "stl"],
         typer.Option("--format", help="Report, all that is known, sections, points, or the solid."),

@@ -102,12 +102,18 @@ def test_an_empty_record_is_whole_and_stays_unmade(rotrecon, tmp_path, monkeypat
 
 
 @pytest.mark.parametrize("format_", ["html", "json", "csv", "ply", "glb", "stl"])
-def test_export_writes_a_file_or_into_a_folder(rotrecon, data, tmp_path, format_):
-    code, out, _ = rotrecon("log", "export", 2, tmp_path, "--format", format_, "--data", data)
-    assert (code, out) == (0, f"wrote {tmp_path / f'rotrecon-2.{format_}'}\n")
-    code, out, _ = rotrecon("log", "export", 2, tmp_path / "named", "--format", format_, "--data", data)
-    assert (tmp_path / "named").read_bytes() == (tmp_path / f"rotrecon-2.{format_}").read_bytes()
-    code, _, err = rotrecon("log", "export", 2, tmp_path / "no" / "folder", "--format", format_, "--data", data)
+def test_export_writes_every_format_where_it_is_called(rotrecon, data, tmp_path, format_, monkeypatch):
+    monkeypatch.chdir(tmp_path)
+    code, out, _ = rotrecon("log", "export", 2, "--format", format_, "--data", data)
+    assert (code, out) == (0, f"wrote rotrecon-2.{format_}\n")
+    assert (tmp_path / f"rotrecon-2.{format_}").stat().st_size > 1000
+
+
+def test_export_writes_a_named_file_or_into_a_folder(rotrecon, data, tmp_path):
+    assert rotrecon("log", "export", 2, tmp_path, "--data", data)[0] == 0
+    assert rotrecon("log", "export", 2, tmp_path / "named", "--data", data)[0] == 0
+    assert (tmp_path / "named").read_bytes() == (tmp_path / "rotrecon-2.html").read_bytes()
+    code, _, err = rotrecon("log", "export", 2, tmp_path / "no" / "folder", "--data", data)
     assert (code, err.count("\n")) == (2, 1)
 
 

@@ -222,6 +222,14 @@ def test_evidence_that_its_digest_is_not_of_is_found(record, tmp_path):
     assert fault_of(tmp_path) == 1
 
 
+def test_a_damaged_entry_is_never_handed_out(record, tmp_path):
+    record.append(Entry("rejected", "ann"))
+    tampered(tmp_path, "UPDATE entries SET body = replace(body, 'ann', 'eve')")
+    for read in (record.entries, lambda: record.entry(1)):
+        with pytest.raises(StoreError, match=r"entry 1 .*damaged"):
+            read()
+
+
 def test_a_damaged_scene_is_never_handed_out(record, tmp_path):
     record.append(proposal(frame()), frame())
     tampered(tmp_path, "UPDATE arrays SET content = substr(content, 2)")

@@ -248,6 +248,13 @@ def test_json_holds_all_that_was_recorded(decision):
     assert content["replay"]["same"] is True
 
 
+def test_a_proposal_keeps_a_small_picture(decision):
+    picture = decision.evidence.entry.content["payload"]["picture"]
+    content = cv2.imdecode(np.frombuffer(base64.b64decode(picture.split(",")[1]), np.uint8), cv2.IMREAD_COLOR)
+    assert content.shape == (144, 192, 3)
+    assert len(picture) < 10_000
+
+
 def test_what_was_not_measured_has_no_solid(wall):
     for kind in ("glb", "stl"):
         with pytest.raises(NothingToExport, match="entry 3 has no solid"):

@@ -10,6 +10,7 @@ from app.record.errors import NoSuchEntry, StoreError
 from app.record.store import Record
 from app.record.tree import Tree, canonical, from_tree
 from app.record.versions import versions
+from app.report.pictures import thumbnail
 from rotrecon.answer import answer
 from rotrecon.drawing import Drawing
 from rotrecon.frame import Frame
@@ -22,7 +23,8 @@ from rotrecon.tools import ToolProposal
 def proposal(who: str, frame: Frame, drawing: Drawing, settings: Settings, result: Reconstruction) -> Entry:
     """The entry of a result: a proposal when it names a tool, else a refusal. Append it together with the frame.
 
-    The drawing is the operator's, with an axis or without; the digest is that of `app.digest.evidence_digest`.
+    The drawing is the operator's, with an axis or without; the digest is that of `app.digest.evidence_digest`. The
+    payload is `evidence`, what `rotrecon.answer` says, and a small picture as a data URL.
     """
     trees = {"drawing": tree_of(drawing), "settings": tree_of(settings), "result": result_tree(result)}
     name = frame_id(frame)
@@ -30,8 +32,14 @@ def proposal(who: str, frame: Frame, drawing: Drawing, settings: Settings, resul
         kind="proposal" if isinstance(result.tool, ToolProposal) else "refusal",
         who=who,
         digest=digest_of_parts(name, **trees),
-        payload={"evidence": {"frame": name, **trees}, "answer": answer(result)},
+        payload={"evidence": {"frame": name, **trees}, "answer": answer(result), "picture": thumbnail(result)},
     )
+
+
+def said_with(written: Written) -> dict[str, Tree]:
+    """What an entry holds beside the measurement, such as the reason of a rejection."""
+    measured = ("evidence", "answer", "picture")
+    return {name: value for name, value in written.content["payload"].items() if name not in measured}
 
 
 @dataclass(frozen=True, eq=False)

@@ -12,6 +12,7 @@ import platformdirs
 from app.record.entries import Entry, EntryKind, Head, Written, link
 from app.record.errors import NoSuchEntry, StoreError
 from app.record.scenes import load_frame, save_frame, scene_problem
+from app.record.tree import sha256
 from app.record.versions import versions
 from rotrecon.files import flush_folder
 from rotrecon.frame import Frame
@@ -98,14 +99,14 @@ class Record:
         where = "WHERE (?1 IS NULL OR kind = ?1) AND (?2 IS NULL OR digest = ?2)"
         query = f"SELECT id, hash, CAST(body AS BLOB) FROM entries {where} ORDER BY id DESC LIMIT ?3"
         rows = self._rows(query, (kind, digest, -1 if last is None else last))
-        return tuple(Written(*row) for row in reversed(rows))
+        return tuple(self._written(row) for row in reversed(rows))
 
     def entry(self, number: int) -> Written:
         """One entry; raises NoSuchEntry."""
         rows = self._rows("SELECT id, hash, CAST(body AS BLOB) FROM entries WHERE id = ?", (number,))
         if not rows:
             raise NoSuchEntry(f"there is no entry {number} in {self.folder}; `rotrecon log list` shows those there are")
-        return Written(*rows[0])
+        return self._written(rows[0])
 
     def scene(self, name: str) -> Frame:
         """A frame by its name (see `app.digest.frame_id`), to the last bit as it was; raises NoSuchEntry."""
@@ -134,6 +135,13 @@ class Record:
     def _rows(self, query: str, values: tuple[Any, ...]) -> list[Any]:
         with self._lock, _told(self.folder):
             return self._connection.execute(query, values).fetchall()
+
+    def _written(self, row: tuple[int, str, bytes]) -> Written:
+        """An entry as it is read, if it is the one that was written."""
+        number, digits, body = row
+        if sha256(body) != digits:
+            raise StoreError(f"entry {number} of the record in {self.folder} is damaged; restore it from a copy")
+        return Written(number, digits, body)
 
     def _head(self) -> Head:
         row = self._connection.execute("SELECT id, hash FROM entries ORDER BY id DESC LIMIT 1").fetchone()

@@ -16,6 +16,8 @@ MARGIN = 0.2
 CLOSE_UP_PX = 640
 """Longer side of the close-up."""
 DEPTH_OPACITY = 0.6
+THUMBNAIL_PX, THUMBNAIL_QUALITY = 192, 70
+"""Width and quality that make a few kilobytes, as every proposal keeps one."""
 
 
 def report_pictures(result: Reconstruction) -> list[tuple[str, str]]:
@@ -34,9 +36,17 @@ def report_pictures(result: Reconstruction) -> list[tuple[str, str]]:
     ]
 
 
-def data_url(image: Bytes) -> str:
+def thumbnail(result: Reconstruction) -> str:
+    """The frame with the result, small, as a data URL: a list of decisions is told apart by it."""
+    image = with_outlines(with_segmentation(result.frame.image, result), outlines(result))
+    scale = min(1.0, THUMBNAIL_PX / image.shape[1])
+    small = cv2.resize(image, None, fx=scale, fy=scale, interpolation=cv2.INTER_AREA)
+    return data_url(np.asarray(small, dtype=np.uint8), THUMBNAIL_QUALITY)
+
+
+def data_url(image: Bytes, quality: int = QUALITY) -> str:
     """A picture (H, W, 3) RGB as a JPEG in a data URL."""
-    written, content = cv2.imencode(".jpg", image[..., ::-1], [cv2.IMWRITE_JPEG_QUALITY, QUALITY])
+    written, content = cv2.imencode(".jpg", image[..., ::-1], [cv2.IMWRITE_JPEG_QUALITY, quality])
     assert written
     return f"data:image/jpeg;base64,{b64encode(content.tobytes()).decode()}"
 

@@ -7,7 +7,7 @@ import jinja2
 from markupsafe import Markup
 
 from app.record.entries import Written
-from app.record.evidence import Decision
+from app.record.evidence import Decision, said_with
 from app.report.chart import sections_svg
 from app.report.pictures import report_pictures
 from app.static_files import static_text
@@ -110,5 +110,4 @@ def _is_of(reason: str, name: str) -> bool:
 
 def _said(entry: Written) -> str:
     """What a person said with an entry, or the program."""
-    payload = entry.content["payload"]
-    return "; ".join(f"{name}: {value}" for name, value in payload.items() if name not in ("evidence", "answer"))
+    return "; ".join(f"{name}: {value}" for name, value in said_with(entry).items())
