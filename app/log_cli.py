@@ -83,7 +83,7 @@ def verify_(
     if fault is not None:
         typer.echo(f"entry {fault.id} {fault.problem}")
         raise typer.Exit(DIFFERENT)
-    typer.echo(f"{end.id} entries, each as it was written; head {end}")
+    typer.echo(f"the record is whole; entries: {end.id}, head {end}")
 
 
 @log.command()
