@@ -10,7 +10,7 @@ import typer
 from app.describe import describe
 from app.record.entries import EntryKind, Head, Written
 from app.record.errors import NoSuchEntry
-from app.record.evidence import Difference, Replay, decision_of, evidence_of, replay, said_with
+from app.record.evidence import Difference, Replay, evidence_of, replay, said_with
 from app.record.store import Record
 from app.record.verify import verify
 from app.writing import write_file
@@ -97,11 +97,11 @@ def export(
     data: Data = None,
 ) -> None:
     """Write what there is to report of an entry into a file."""
-    from app.report.exports import NothingToExport, export_decision, file_name  # templates and meshes take time to load
+    from app.report.exports import NothingToExport, export_entry, file_name  # templates and meshes take time to load
 
     with closing(Record.read(data)) as record:
         try:
-            content = export_decision(decision_of(record, number), format_)
+            content = export_entry(record, number, format_)
         except (NoSuchEntry, NothingToExport, DrawingError) as error:
             _nothing(error)
     path = out / file_name(number, format_) if out.is_dir() else out

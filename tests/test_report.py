@@ -24,7 +24,7 @@ from app.record.errors import NoSuchEntry
 from app.record.evidence import Decision, decision_of, evidence_of, proposal, replay
 from app.record.store import Record
 from app.report.chart import sections_svg
-from app.report.exports import NothingToExport, export_decision
+from app.report.exports import NothingToExport, export_decision, export_entry
 from app.report.points import Label
 from app.report.sections import COLUMNS
 from rotrecon.camera import transform
@@ -239,13 +239,15 @@ def test_the_solid_opens_as_a_closed_mesh_of_its_size_in_metres(tin, kind):
     np.testing.assert_allclose(mesh.center_mass, solid.center_m, atol=1e-4)
 
 
-def test_json_holds_all_that_was_recorded(decision):
-    content = json.loads(export_decision(decision, "json"))
-    assert content["head"] == str(decision.head)
-    assert content["entry"]["hash"] == decision.entry.hash
-    assert [entry["kind"] for entry in content["trail"]][1:] == ["armed", "confirmed"]
-    assert content["trail"][0]["payload"]["answer"] == decision.evidence.answer
-    assert content["replay"]["same"] is True
+def test_json_holds_all_that_was_recorded_and_needs_no_measurement(tmp_path):
+    with closing(Record.open(tmp_path)) as record:
+        for entry in (Entry("proposal", "ann", "a" * 64), Entry("declined", "eve"), Entry("armed", "ann", "a" * 64)):
+            record.append(entry, None)
+        content = json.loads(export_entry(record, 1, "json"))
+        assert content["head"] == str(record.head)
+        assert content["entry"] == {"hash": record.entry(1).hash, **record.entry(1).content}
+        assert [entry["id"] for entry in content["trail"]] == [1, 3]
+        assert [entry["id"] for entry in json.loads(export_entry(record, 2, "json"))["trail"]] == [2]
 
 
 def test_a_proposal_keeps_a_small_picture(decision):

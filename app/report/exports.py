@@ -1,12 +1,11 @@
 """A decision as a file: report, everything as JSON, sections, points, or the solid."""
 
 import json
-from collections.abc import Callable
-from dataclasses import asdict
 from typing import Any, Literal, get_args
 
 from app.record.entries import Written
-from app.record.evidence import Decision
+from app.record.evidence import Decision, decision_of
+from app.record.store import Record
 from app.report.points import points_ply
 from app.report.report import report_html
 from app.report.sections import sections_csv
@@ -22,20 +21,26 @@ class NothingToExport(Exception):
     """The decision has nothing of the kind that was asked for; the message says why."""
 
 
-def export_decision(decision: Decision, kind: ExportFormat) -> bytes:
+def export_entry(record: Record, number: int, kind: ExportFormat) -> bytes:
     """The content of a file of one of the formats; lengths in metres, base coordinates, unless a name says otherwise.
 
-    Raises NothingToExport for the solid or the sections of a measurement that has none.
+    All but JSON are made by computing the entry again. Raises NoSuchEntry, NothingToExport for the solid or the
+    sections of a measurement that has none, DrawingError for one that is refused today, and StoreError.
     """
-    writers: dict[ExportFormat, Callable[[Decision], bytes]] = {
-        "html": lambda decision: report_html(decision).encode(),
-        "json": decision_json,
-        "csv": _csv,
-        "ply": lambda decision: points_ply(decision.replay.result),
-        "glb": lambda decision: _mesh(decision, "glb"),
-        "stl": lambda decision: _mesh(decision, "stl"),
-    }
-    return writers[kind](decision)
+    return entry_json(record, number) if kind == "json" else export_decision(decision_of(record, number), kind)
+
+
+def export_decision(decision: Decision, kind: Literal["html", "csv", "ply", "glb", "stl"]) -> bytes:
+    """The same of a decision that was read."""
+    match kind:
+        case "html":
+            return report_html(decision).encode()
+        case "csv":
+            return _csv(decision)
+        case "ply":
+            return points_ply(decision.replay.result)
+        case "glb" | "stl":
+            return _mesh(decision, kind)
 
 
 def file_name(number: int, kind: str) -> str:
@@ -44,25 +49,21 @@ def file_name(number: int, kind: str) -> str:
     return f"rotrecon-{number}.{kind}"
 
 
-def decision_json(decision: Decision) -> bytes:
-    """The entry and those of the same evidence as they were written, the head, and what computing it again gave."""
-    replay = decision.replay
+def entry_json(record: Record, number: int) -> bytes:
+    """An entry and all of the same evidence as they were written, and the head; raises NoSuchEntry."""
+    written = record.entry(number)
+    digest = written.content["digest"]
+    trail = (written,) if digest is None else record.entries(digest=digest)
     content = {
         "format": FORMAT,
-        "head": str(decision.head),
-        "entry": _entry(decision.entry),
-        "trail": [_entry(entry) for entry in decision.trail],
-        "replay": {
-            "same": replay.same,
-            "numbers": replay.numbers,
-            "differences": [asdict(one) for one in replay.differences],
-            "versions": [asdict(one) for one in replay.versions],
-        },
+        "head": str(record.head),
+        "entry": _as_exported(written),
+        "trail": [_as_exported(entry) for entry in trail],
     }
     return json.dumps(content, indent=1, allow_nan=False).encode()
 
 
-def _entry(written: Written) -> dict[str, Any]:
+def _as_exported(written: Written) -> dict[str, Any]:
     return {"hash": written.hash, **written.content}
 
 
