@@ -221,7 +221,7 @@ def test_points_carry_what_the_segmentation_made_of_them(tin):
     result = tin.replay.result
     vertices = PlyData.read(BytesIO(export_decision(tin, "ply")))["vertex"].data
     places = np.stack([vertices["x"], vertices["y"], vertices["z"]], axis=1)
-    kept = np.unique(result.segments.pixel[result.segmentation.kept])
+    kept = np.union1d(result.segments.pixel[result.segmentation.kept], result.sections.pixel)
     meant = vertices["label"] == Label.OBJECT
     wanted = transform(TURNED, result.frame.points_m.reshape(-1, 3)[kept])
     np.testing.assert_allclose(places[meant], wanted, atol=1e-6)

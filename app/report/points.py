@@ -35,15 +35,12 @@ def points_ply(result: Reconstruction) -> bytes:
     The section is that of the CSV, from 1; 0 for points in none.
     """
     label = labels(result)
-    inside = result.segments.inside
-    pixel, first = np.unique(result.segments.pixel[inside], return_index=True)
+    pixel = np.flatnonzero((label > 0) & np.isfinite(result.frame.points_m).all(axis=2).ravel())
     points_m = result.frame.points_m.reshape(-1, 3)[pixel]
-    known = np.isfinite(points_m).all(axis=1)
-    pixel, points_m = pixel[known], points_m[known]
     vertices = np.empty(len(pixel), FIELDS)
     vertices["x"], vertices["y"], vertices["z"] = transform(result.frame.T_base_camera, points_m).T
     vertices["red"], vertices["green"], vertices["blue"] = result.frame.image.reshape(-1, 3)[pixel].T
-    vertices["label"] = label[inside][first][known]
+    vertices["label"] = label[pixel]
     vertices["section"] = _section_of(result)[pixel]
     comments = ["base coordinates, metres", *(f"label {label.value} {label.name.lower()}" for label in Label)]
     file = BytesIO()
@@ -52,14 +49,19 @@ def points_ply(result: Reconstruction) -> bytes:
 
 
 def labels(result: Reconstruction) -> Bytes:
-    """Label (S, W) of each cell of the cross segments."""
-    segmentation = result.segmentation
+    """Label of each pixel of the flattened frame; 0 for those that no line of pixels and no section went through."""
+    segmentation, pixel = result.segmentation, result.segments.pixel
     history = segmentation.history
-    label = np.full(history.shape, Label.UNUSED, dtype=np.uint8)
-    label[history & PixelHistory.DEPTH > 0] = Label.OUTLIER
-    label[segmentation.removed_in_run > 0] = Label.DISTANT
-    label[history & PixelHistory.SPARSE_LINE > 0] = Label.SPARSE_LINE
-    label[segmentation.kept] = Label.OBJECT
+    of_cell = np.full(history.shape, Label.UNUSED, dtype=np.uint8)
+    of_cell[history & PixelHistory.DEPTH > 0] = Label.OUTLIER
+    of_cell[segmentation.removed_in_run > 0] = Label.DISTANT
+    of_cell[history & PixelHistory.SPARSE_LINE > 0] = Label.SPARSE_LINE
+    label = np.zeros(result.frame.camera.width * result.frame.camera.height, dtype=np.uint8)
+    label[pixel[result.segments.inside]] = of_cell[result.segments.inside]
+    # last, as slanted lines go through some pixels twice and sections hold pixels that lie between the lines
+    label[pixel[segmentation.kept]] = Label.OBJECT
+    if result.sections is not None:
+        label[result.sections.pixel] = Label.OBJECT
     return label
 
 
