@@ -130,6 +130,13 @@ def test_an_empty_record_is_whole_and_reading_makes_none(tmp_path):
     assert not (tmp_path / "none").exists()
 
 
+def test_a_record_whose_maker_was_killed_at_once_is_an_empty_one(tmp_path):
+    (tmp_path / FILE).touch()
+    assert fault_of(tmp_path) is None
+    assert filled(tmp_path)[0] == Head()
+    assert fault_of(tmp_path) is None
+
+
 @pytest.fixture(scope="module")
 def whole(tmp_path_factory: pytest.TempPathFactory) -> tuple[Path, list[Head]]:
     folder = tmp_path_factory.mktemp("whole")

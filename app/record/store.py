@@ -68,11 +68,13 @@ class Record:
         """Open the record of a folder to read it; where there is none, it is an empty one and nothing is made."""
         folder = data_folder() if folder is None else folder
         with _told(folder):
-            if not (folder / FILE).exists():
+            file = folder / FILE
+            connection = _connected(f"{file.resolve().as_uri()}?mode=ro" if file.exists() else ":memory:", uri=True)
+            if _format_of(connection) == 0:
+                # none yet, or whoever made it was killed before there was anything in it
+                connection.close()
                 connection = _connected(":memory:")
                 connection.executescript(SCHEMA)
-            else:
-                connection = _connected(f"{(folder / FILE).resolve().as_uri()}?mode=ro", uri=True)
             return Record(folder, _checked(connection, folder))
 
     def close(self) -> None:
@@ -185,7 +187,7 @@ def _told(folder: Path) -> Iterator[None]:
     try:
         yield
     except (sqlite3.Error, OSError) as error:
-        why = error.strerror if isinstance(error, OSError) else str(error)
+        why = error.strerror if isinstance(error, OSError) and error.strerror else str(error)
         raise StoreError(
             f"the record in {folder} cannot be used ({why}); free or mend the disk, or name another folder by --data"
         ) from error
