@@ -3,7 +3,7 @@
 from collections.abc import Callable
 from dataclasses import fields, is_dataclass, replace
 from datetime import UTC, datetime, timedelta
-from typing import Any
+from typing import Any, get_args, get_type_hints
 
 import msgspec
 import numpy as np
@@ -12,7 +12,7 @@ from hypothesis import given, settings
 from hypothesis import strategies as st
 
 from app.digest import evidence_digest, frame_id, tree_of
-from app.record.tree import as_tree, canonical, from_tree, in_full
+from app.record.tree import KNOWN, as_tree, canonical, from_tree, in_full
 from rotrecon.drawing import Constraints, Drawing
 from rotrecon.frame import DepthCameraNoise, Frame, StereoNoise
 from rotrecon.reconstruct import reconstruct
@@ -204,6 +204,19 @@ def test_numbers_come_back_exactly(value):
 def test_drawings_and_settings_come_back():
     for value in (DRAWING, SETTINGS, Drawing(DRAWING.area)):
         assert from_tree(tree_of(value), lambda digest: b"") == value
+
+
+def data_types(of: Any) -> set[type]:
+    """The dataclasses and structs that a type is made of, itself among them."""
+    inner = set().union(*(data_types(argument) for argument in get_args(of)))
+    if not (is_dataclass(of) or (isinstance(of, type) and issubclass(of, msgspec.Struct))):
+        return inner
+    return {of} | inner.union(*(data_types(hint) for hint in get_type_hints(of).values()))
+
+
+def test_all_that_a_measurement_is_made_of_can_be_read_back():
+    assert data_types(Frame) | data_types(Drawing) | data_types(Settings) <= set(KNOWN.values())
+    assert StereoNoise in data_types(Frame)
 
 
 def test_what_another_version_wrote_is_refused_and_not_guessed():
