@@ -12,10 +12,12 @@ from app.describe import describe, describe_result
 from app.drawing_text import parse_area, parse_axis, stroke_text
 from app.flaw_text import FLAW_HELP, parse_flaws
 from app.host import HostError
+from app.log_cli import add_to
+from app.record.errors import StoreError
+from app.writing import write_file
 from rotrecon.answer import answer, cannot
 from rotrecon.drawing import Constraints, Direction, Drawing, DrawingError
 from rotrecon.errors import SceneError
-from rotrecon.files import write_whole
 from rotrecon.frame import Capture, Frame, FrameUnavailable
 from rotrecon.outcome import FitFailure
 from rotrecon.overlay import outlines, with_outlines, with_segmentation
@@ -38,6 +40,7 @@ cli = typer.Typer(
     pretty_exceptions_enable=False,
     help="Measures objects of revolution in front of a robot arm, and names the tool that fits them.",
 )
+add_to(cli)
 DEMO = "leg"
 BAD_INPUT, CANNOT = 2, 3
 
@@ -53,7 +56,7 @@ def main() -> None:
     """Run the command; bad input is one sentence on stderr and exit code 2."""
     try:
         cli()
-    except (SceneError, DrawingError, ToolTableError, HostError) as error:
+    except (SceneError, DrawingError, ToolTableError, HostError, StoreError) as error:
         typer.echo(f"rotrecon: {error}", err=True)
         sys.exit(BAD_INPUT)
 
@@ -122,15 +125,7 @@ def _json(content: dict[str, object]) -> str:
 
 def _write_overlay(path: Path, result: Reconstruction) -> None:
     image = with_outlines(with_segmentation(result.frame.image, result), outlines(result))
-    _write(path, "the overlay", encode_png(image))
-
-
-def _write(path: Path, what: str, content: bytes) -> None:
-    try:
-        write_whole(path, content)
-    except OSError as error:
-        remedy = "name a file in a folder where you may write"
-        raise SceneError(path, what, f"cannot be written ({error.strerror})", remedy) from error
+    write_file(path, "the overlay", encode_png(image))
 
 
 @cli.command()
@@ -241,7 +236,7 @@ def bench(
         from app.bench.accuracy.peers import PeerMissing
 
         try:
-            _write(accuracy, "the document", accuracy_document(recordings).encode())
+            write_file(accuracy, "the document", accuracy_document(recordings).encode())
         except PeerMissing as error:
             typer.echo(f"rotrecon: {error}", err=True)
             raise typer.Exit(BAD_INPUT) from error
@@ -256,5 +251,5 @@ def bench(
         return
     from app.bench.paper_method import paper_method_document
 
-    _write(paper_method, "the document", paper_method_document().encode())
+    write_file(paper_method, "the document", paper_method_document().encode())
     typer.echo(f"wrote {paper_method}")
