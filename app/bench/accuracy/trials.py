@@ -20,11 +20,11 @@ from rotrecon.settings import Method
 
 POSES = 200
 """Of each object."""
-DRAWS = 2
-"""Noises and drawings of each pose where noise is correlated: intervals of 600 clouds."""
+DRAWS = 3
+"""Noises and drawings of each pose where noise is correlated: intervals of 600 clouds of every object."""
 METHOD: Method = "robust"
 """The one whose accuracy is asked for."""
-PEER_POSES = 20
+PEER_POSES = 10
 """The packages of others take up to 3 s a cloud."""
 PEER_CELLS = (WHITE[0], WHITE[4], CORRELATED[0])
 SUPERSAMPLING = 2
