@@ -18,7 +18,8 @@ PROFILE_POINTS = 65
 def chosen_of(ranked: tuple[Ranked, ...], kind: Kind | None, settings: Settings) -> Ranked | None:
     """The most credible shape, or that of the kind asked for; None when the depths speak against that kind.
 
-    A cone that hardly tapers is a cylinder unless the depths insist: of many cylinders some look like such a cone.
+    A cone that hardly tapers is a cylinder unless the depths insist: of many cylinders some look like such a cone. One
+    that cannot taper much is a cylinder whatever they say, if there is one of its size.
     """
     fitted = [one for one in ranked if one.fit is not None]
     if kind is not None:
@@ -26,8 +27,11 @@ def chosen_of(ranked: tuple[Ranked, ...], kind: Kind | None, settings: Settings)
         return asked[0] if asked else None
     best = fitted[0]
     if best.shape == "cone" and abs(half_angle_rad(best)) < settings.cone_half_angle_rad:
-        straight = [one for one in fitted if one.shape == "cylinder" and one.cost <= settings.tapers_cost]
-        return straight[0] if straight else best
+        low_m, high_m = intervals_of(best, 0.0, None).diameter_m
+        for one in fitted:
+            as_wide = low_m <= 2 * one.surface.size_m <= high_m and is_straight(best, settings)
+            if one.shape == "cylinder" and (one.cost <= settings.tapers_cost or as_wide):
+                return one
     return best
 
 

@@ -64,12 +64,18 @@ def test_a_kind_that_was_hopeless_is_never_chosen():
 
 
 def test_a_cone_that_hardly_tapers_is_a_cylinder_unless_the_depths_insist():
-    slight, clear = ranked("cone", 0.0, half_angle_deg=1.0), ranked("cone", 0.0, half_angle_deg=6.0)
+    slight, clear = ranked("cone", 0.0, half_angle_deg=2.7, off_deg=0.5), ranked("cone", 0.0, half_angle_deg=6.0)
     near, far = ranked("cylinder", SETTINGS.tapers_cost), ranked("cylinder", SETTINGS.tapers_cost + 0.1)
     assert chosen_of((slight, near), None, SETTINGS) is near
     assert chosen_of((slight, far), None, SETTINGS) is slight
     assert chosen_of((clear, near), None, SETTINGS) is clear
     assert chosen_of((slight, hopeless("cylinder", 1.0)), None, SETTINGS) is slight
+
+
+def test_a_cone_that_cannot_taper_much_is_a_cylinder_of_its_size_whatever_the_depths_say():
+    straight, far = ranked("cone", 0.0, half_angle_deg=0.5), ranked("cylinder", 100.0)
+    assert chosen_of((straight, far), None, SETTINGS) is far
+    assert chosen_of((straight, ranked("cylinder", 100.0, radius_m=0.06)), None, SETTINGS) is straight
 
 
 def test_another_kind_is_possible_until_it_is_a_hundred_times_less_credible():

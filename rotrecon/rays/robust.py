@@ -21,6 +21,8 @@ HOPELESS = 2.0
 LITTLE = 50.0
 OTHER_TAPERS_RAD = tuple(np.deg2rad([-7.0, 7.0]))
 """By which a surface may taper more or less than its depths have it."""
+BEYOND_PX = 1.5
+"""How far outside its outline a surface has nothing to do with a depth: nearer, its limb may be off by as much."""
 OUT_OF_QUESTION = 20.0
 """Difference of costs at which a shape is not asked any further: its odds are one to half a billion."""
 OUTLINE_ROUNDS = 2
@@ -160,15 +162,14 @@ def _independent(lead: RayFit) -> float:
 def _cost(scene: Scene, lead: RayFit, fit: RayFit) -> float:
     """Misfit of a surface to the depths and the outline that the lead rests on.
 
-    What lies beyond its outline costs as much as any outlier: by how many pixels of the background two fits differ is
-    chance, as neither was fitted to them.
+    What lies well beyond its outline costs as much as any outlier.
     """
     rays = scene.patch.rays[:, lead.pixels]
     costs = tukey(predicted(scene.patch, lead.pixels, fit.surface, lead.sight).residual / lead.sigma)[0]
     if fit.surface.side < 0:
         gap_m, depth_m = fit.surface.gap(rays)
         gap_px = gap_m * scene.patch.focal_px / np.maximum(depth_m, 1e-9)
-        costs = np.where(gap_px > (lead.sight.window_px - 1) / 2, TUKEY**2 / 6, costs)
+        costs = np.where(gap_px > (lead.sight.window_px - 1) / 2 + BEYOND_PX, TUKEY**2 / 6, costs)
     cost = lead.likeness.independent_share * float(costs.sum())
     for outline, share in lead.outlines:
         cost += share * float(tukey(outline.predict(fit.surface).residual)[0].sum())
