@@ -44,20 +44,21 @@ class Outcome:
 
 def by_program(cloud: Cloud, method: Method, drawing: Drawing | None = None) -> Outcome:
     """What `reconstruct` makes of a cloud, as drawn or with another drawing."""
-    return judged(reconstruct(cloud.frame, drawing or cloud.drawing, Settings(method=method)), cloud)
+    result = reconstruct(cloud.frame, drawing or cloud.drawing, Settings(method=method))
+    return judged(result, cloud.truth, cloud.place_m)
 
 
-def judged(result: Reconstruction, cloud: Cloud) -> Outcome:
-    """A reconstruction beside the truth."""
+def judged(result: Reconstruction, truth: Simple, place_m: Floats) -> Outcome:
+    """A reconstruction beside the truth, in camera coordinates; radii are compared at the height of a place (3,)."""
     if not isinstance(result.fit, Fit):
         return Outcome(reason=result.fit.reason)
-    solid, said, truth = result.fit.solid, answer(result), cloud.truth
+    solid, said = result.fit.solid, answer(result)
     true_radius = radius_at(truth, solid.center_m)
     angle = true_half_angle(truth)
     intervals = result.fit.intervals
     along = float(np.sign(solid.direction @ truth.direction))
     return Outcome(
-        radius=radius_at(solid, cloud.place_m) / radius_at(truth, cloud.place_m) - 1,
+        radius=radius_at(solid, place_m) / radius_at(truth, place_m) - 1,
         stated=radius_at(solid, solid.center_m) / true_radius - 1,
         half_angle=along * getattr(solid, "half_angle_rad", 0.0) / angle - 1,
         radius_interval=_relative(intervals and intervals.diameter_m, 2 * true_radius),

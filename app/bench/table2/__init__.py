@@ -1,0 +1,1 @@
+"""The paper's experiment again, from rendered pictures: docs/table2.md."""
