@@ -16,9 +16,10 @@ from app.log_cli import add_to
 from app.record.errors import StoreError
 from app.writing import write_file
 from rotrecon.answer import answer, cannot
+from rotrecon.capture import Capture
 from rotrecon.drawing import Constraints, Direction, Drawing, DrawingError
 from rotrecon.errors import SceneError
-from rotrecon.frame import Capture, Frame, FrameUnavailable
+from rotrecon.frame import Frame, FrameUnavailable
 from rotrecon.outcome import FitFailure
 from rotrecon.overlay import outlines, with_outlines, with_segmentation
 from rotrecon.reconstruct import reconstruct
@@ -91,7 +92,7 @@ def fit(
     settings = Settings(method=method, layers=layers, tools=default_tools() if tools is None else read_tools(tools))
     if overlay is not None and overlay.suffix.lower() != ".png":
         raise typer.BadParameter(f"--overlay {overlay} is not a PNG; name a file that ends in .png")
-    frame = read_scene(scene).frame()
+    frame = read_scene(scene).frame(drawing.area, settings)
     if isinstance(frame, FrameUnavailable):
         content = cannot(frame.reason, method)
         typer.echo(_json(content) if json_ else describe(content))

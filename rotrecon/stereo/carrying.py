@@ -1,0 +1,43 @@
+"""Disparity carried back as depth into the reference's own pixels, without mixing surfaces."""
+
+import cv2
+import numpy as np
+
+from rotrecon.arrays import Cloud
+from rotrecon.stereo.canvas import Box, Canvas, strips
+
+ONE_SURFACE_PX = 1.0
+"""Disparities of neighbouring pixels that differ more are of two surfaces, or of one too slanted to interpolate."""
+NEIGHBOURS = np.ones((3, 3), dtype=np.uint8)
+
+
+def inverse_depths(canvas: Canvas, disparity: Cloud, box: Box) -> Cloud:
+    """Inverse depth along the reference's z, 1/m, of its pixels in a box (h, w); NaN where there is none.
+
+    `disparity` (height, width) is the canvas's, px, negative where there is none. It is interpolated where all its
+    neighbours belong to one surface; elsewhere the nearest one is taken, so that no depth arises between surfaces.
+    """
+    spread = cv2.dilate(disparity, NEIGHBOURS) - cv2.erode(disparity, NEIGHBOURS)
+    broken = (np.asarray(spread) > ONE_SURFACE_PX * canvas.focal_px / canvas.pair.reference.camera.focal_px).astype(
+        np.uint8
+    )
+    left, top, right, bottom = box
+    found = np.empty((bottom - top, right - left), dtype=np.float32)
+    for first, last in strips(top, bottom):
+        found[first - top : last - top] = _strip(canvas, disparity, broken, (left, first, right, last))
+    return found
+
+
+def _strip(canvas: Canvas, disparity: Cloud, broken: np.ndarray, box: Box) -> Cloud:
+    left, top, right, bottom = box
+    u, v = np.arange(left, right, dtype=np.float64), np.arange(top, bottom, dtype=np.float64)[:, None]
+    x, y, depth_ratio = (row[0] * u + row[1] * v + row[2] for row in canvas.homography())
+    x, y = (x / depth_ratio).astype(np.float32), (y / depth_ratio).astype(np.float32)
+    outside = {"borderMode": cv2.BORDER_CONSTANT, "borderValue": -1}
+    nearest = np.asarray(cv2.remap(disparity, x, y, cv2.INTER_NEAREST, **outside))
+    smooth = np.asarray(cv2.remap(disparity, x, y, cv2.INTER_LINEAR, **outside))
+    apart = cv2.remap(broken, x, y, cv2.INTER_NEAREST, borderMode=cv2.BORDER_CONSTANT, borderValue=1)
+    chosen = np.where(np.asarray(apart) > 0, nearest, smooth) + np.float32(canvas.first_disparity)
+    # depth in the common planes is f b / disparity, and depth_ratio times the depth along the reference's z
+    inverse = chosen * (depth_ratio / canvas.disparity_of_inverse_depth)
+    return np.where((nearest >= 0) & (inverse > 0), inverse, np.nan).astype(np.float32)
