@@ -36,7 +36,7 @@ class Capture:
             return self.recorded
         if isinstance(self.prepared, FrameUnavailable):
             return self.prepared
-        return whole_frame(self.prepared) if area is None else area_frame(self.prepared, area, settings)
+        return whole_frame(self.prepared) if area is None else area_frame(self.prepared, area)
 
     @cached_property
     def prepared(self) -> Prepared | FrameUnavailable:

@@ -49,8 +49,11 @@ class StereoEvidence:
 
     pairs: tuple[int, ...]
     """Numbers of the views that the first one, number 0, was matched with."""
-    epipolar_error_px: float
-    """How far matched features lie off the row that the poses and cameras put them in; median of the worst pair."""
+    left_out: tuple[str, ...]
+    """Views that are not used, each with the reason."""
+    epipolar_error_px: float | None
+    """How far matched features lie off the row that the poses and cameras put them in: median of the worst pair; None
+    where there are too few to say."""
     features: int
     """Matched features that say so, of all pairs."""
     valid_share: float

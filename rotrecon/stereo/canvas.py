@@ -99,16 +99,18 @@ def strips(start: int, end: int) -> list[tuple[int, int]]:
 def canvas_over(pair: Rectification, box: Box, scale: float, inverse_depths: tuple[float, float]) -> Canvas:
     """The canvas on which the reference's pixels in a box are matched.
 
-    `scale` shrinks the picture, 1 keeps the reference's focal length; `inverse_depths` (1/m, of depths in the common
-    planes) are those looked for. A pixel in the middle of the box falls on a pixel, so that a pair that is rectified
-    already is not interpolated.
+    `scale` shrinks the picture, 1 keeps the reference's focal length; `inverse_depths` (1/m, along the reference's z)
+    are the smallest and the largest looked for. A pixel in the middle of the box falls on a pixel, so that a pair that
+    is rectified already is not interpolated.
     """
     focal_px = scale * pair.reference.camera.focal_px
     K = np.diag([focal_px, focal_px, 1.0])
     H = K @ pair.R_reference @ np.linalg.inv(pair.reference.camera.K)
     border = through(H, corners(box))
     anchor = through(H, np.array([[(box[0] + box[2]) // 2, (box[1] + box[3]) // 2]], dtype=np.float64))[0]
-    low, high = (focal_px * pair.baseline_m * inverse_depth for inverse_depth in inverse_depths)
+    ratios = pair.depth_ratios(corners(box))
+    low = focal_px * pair.baseline_m * inverse_depths[0] / float(ratios.max())
+    high = focal_px * pair.baseline_m * inverse_depths[1] / float(ratios.min())
     first = floor(low)
     disparities = DISPARITY_STEP * max(ceil((ceil(high) + 1 - first) / DISPARITY_STEP), 1)
     corner = np.floor(border.min(axis=0) - anchor) - 1

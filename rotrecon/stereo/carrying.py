@@ -3,7 +3,7 @@
 import cv2
 import numpy as np
 
-from rotrecon.arrays import Cloud
+from rotrecon.arrays import Bytes, Cloud, Floats
 from rotrecon.stereo.canvas import Box, Canvas, strips
 
 ONE_SURFACE_PX = 1.0
@@ -11,8 +11,8 @@ ONE_SURFACE_PX = 1.0
 NEIGHBOURS = np.ones((3, 3), dtype=np.uint8)
 
 
-def inverse_depths(canvas: Canvas, disparity: Cloud, box: Box) -> Cloud:
-    """Inverse depth along the reference's z, 1/m, of its pixels in a box (h, w); NaN where there is none.
+def inverse_depths(canvas: Canvas, disparity: Cloud, box: Box, step_px: int = 1) -> Cloud:
+    """Inverse depth along the reference's z, 1/m, of its pixels in a box, every `step_px`-th (h, w); NaN where none.
 
     `disparity` (height, width) is the canvas's, px, negative where there is none. It is interpolated where all its
     neighbours belong to one surface; elsewhere the nearest one is taken, so that no depth arises between surfaces.
@@ -22,22 +22,24 @@ def inverse_depths(canvas: Canvas, disparity: Cloud, box: Box) -> Cloud:
         np.uint8
     )
     left, top, right, bottom = box
-    found = np.empty((bottom - top, right - left), dtype=np.float32)
-    for first, last in strips(top, bottom):
-        found[first - top : last - top] = _strip(canvas, disparity, broken, (left, first, right, last))
+    u, v = np.arange(left, right, step_px, dtype=np.float64), np.arange(top, bottom, step_px, dtype=np.float64)
+    found = np.empty((len(v), len(u)), dtype=np.float32)
+    for first, last in strips(0, len(v)):
+        found[first:last] = _strip(canvas, disparity, broken, u, v[first:last, None])
     return found
 
 
-def _strip(canvas: Canvas, disparity: Cloud, broken: np.ndarray, box: Box) -> Cloud:
-    left, top, right, bottom = box
-    u, v = np.arange(left, right, dtype=np.float64), np.arange(top, bottom, dtype=np.float64)[:, None]
+def _strip(canvas: Canvas, disparity: Cloud, broken: Bytes, u: Floats, v: Floats) -> Cloud:
     x, y, depth_ratio = (row[0] * u + row[1] * v + row[2] for row in canvas.homography())
     x, y = (x / depth_ratio).astype(np.float32), (y / depth_ratio).astype(np.float32)
-    outside = {"borderMode": cv2.BORDER_CONSTANT, "borderValue": -1}
-    nearest = np.asarray(cv2.remap(disparity, x, y, cv2.INTER_NEAREST, **outside))
-    smooth = np.asarray(cv2.remap(disparity, x, y, cv2.INTER_LINEAR, **outside))
-    apart = cv2.remap(broken, x, y, cv2.INTER_NEAREST, borderMode=cv2.BORDER_CONSTANT, borderValue=1)
-    chosen = np.where(np.asarray(apart) > 0, nearest, smooth) + np.float32(canvas.first_disparity)
+    nearest = _sampled(disparity, x, y, cv2.INTER_NEAREST)
+    apart = _sampled(broken, x, y, cv2.INTER_NEAREST) > 0
+    chosen = np.where(apart, nearest, _sampled(disparity, x, y, cv2.INTER_LINEAR)) + np.float32(canvas.first_disparity)
     # depth in the common planes is f b / disparity, and depth_ratio times the depth along the reference's z
     inverse = chosen * (depth_ratio / canvas.disparity_of_inverse_depth)
     return np.where((nearest >= 0) & (inverse > 0), inverse, np.nan).astype(np.float32)
+
+
+def _sampled(values: Cloud | Bytes, x: Cloud, y: Cloud, how: int) -> Cloud:
+    """Values at places of the canvas; -1 beyond it."""
+    return np.asarray(cv2.remap(values, x, y, how, borderMode=cv2.BORDER_CONSTANT, borderValue=(-1.0,)), np.float32)

@@ -4,8 +4,9 @@ from dataclasses import dataclass
 
 import cv2
 import numpy as np
+from numpy.typing import NDArray
 
-from rotrecon.arrays import Bytes, Floats, freeze
+from rotrecon.arrays import Bools, Bytes, Floats, freeze
 from rotrecon.frame import View
 from rotrecon.stereo.canvas import through
 from rotrecon.stereo.rectification import Rectification
@@ -43,6 +44,17 @@ class Matches:
 
     def __post_init__(self) -> None:
         freeze(self)
+
+    def chosen(self, index: Bools | NDArray[np.intp]) -> "Matches":
+        """Some of them."""
+        return Matches(
+            self.reference_px[index], self.other_px[index], self.disparity_px[index], self.row_error_px[index]
+        )
+
+    def inverse_depths(self, pair: Rectification) -> Floats:
+        """(N,) along the reference's z, 1/m."""
+        ratios = pair.depth_ratios(self.reference_px)
+        return self.disparity_px * ratios / (pair.reference.camera.focal_px * pair.baseline_m)
 
 
 def features_of(view: View) -> Features:

@@ -1,31 +1,63 @@
 """Views matched into a frame: the whole of it coarsely, or one area of it finely."""
 
+import cv2
 import numpy as np
 
-from rotrecon.arrays import Cloud
+from rotrecon.arrays import Bools, Cloud
 from rotrecon.drawing import AreaOfInterest, area_mask, check_area
 from rotrecon.frame import Frame, FrameUnavailable, StereoEvidence, StereoNoise
-from rotrecon.settings import Settings
-from rotrecon.stereo.canvas import Box, canvas_over, whole
+from rotrecon.noise import structure
+from rotrecon.stereo.canvas import Box, Canvas, canvas_over, whole
 from rotrecon.stereo.carrying import inverse_depths
+from rotrecon.stereo.exposure import exposure_problem
+from rotrecon.stereo.fusion import fuse
 from rotrecon.stereo.matching import MatcherSettings, match
-from rotrecon.stereo.preparing import Prepared
+from rotrecon.stereo.preparing import Pair, Prepared
+from rotrecon.stereo.scouting import STEP_PX, span
 
 COARSE = 0.5
+"""Scale of the pictures when the whole of them is matched, for display: it takes an eighth of the time."""
 MARGIN_PX = 24
+"""Pixels about an area that are matched too: paths of the matcher come in from there."""
+SMALL_WINDOW_PX, LARGE_WINDOW_PX = 3, 5
+"""Sides of the blocks: small ones keep the limbs of thin objects, large ones err less where there is room."""
+THIN_PX = 60.0
+"""Width of an area round objects that are too thin for large blocks."""
+SCOUTED_TAIL = 0.005
+"""Share of an area's scouted pixels at either end that may be wrong."""
+FEWEST_SCOUTED = 20
+"""Scouted pixels in an area: fewer say nothing of it."""
+SCOUTED_MARGIN_PX = 8.0
+"""Disparities of the full picture beyond those scouted: two of the pixels in which that is done."""
+USUAL_SIGMA_PX = 0.15
+"""Of disparity, measured on rendered pairs with fine texture."""
+LEAST_VALID = 0.05
+"""Share of an area with depth, below which nothing in it is measured."""
+MOVED = 5
+"""Features in an area that have left their rows together: fewer may be chance."""
+MOST_MOVED = 0.3
+"""Share of an area's features that may have: more, and it is the object that moved."""
 
 
 def whole_frame(prepared: Prepared) -> Frame | FrameUnavailable:
     """The whole frame matched at half resolution, for display."""
     camera = prepared.views[0].camera
-    return _frame(prepared, whole(camera), None, COARSE)
+    everything = np.ones((camera.height, camera.width), dtype=np.bool_)
+    return _frame(prepared, whole(camera), everything, COARSE)
 
 
-def area_frame(prepared: Prepared, area: AreaOfInterest, settings: Settings) -> Frame | FrameUnavailable:
-    """The pixels of an area and a margin, matched at full resolution; the rest of the frame has no depth."""
+def area_frame(prepared: Prepared, area: AreaOfInterest) -> Frame | FrameUnavailable:
+    """The pixels of an area and a margin, matched at full resolution; the rest of the frame has no depth.
+
+    Raises DrawingError for an area that cannot be used on the first view.
+    """
     camera = prepared.views[0].camera
     check_area(area, (camera.width, camera.height))
-    inside = area_mask(area, (camera.width, camera.height))
+    inside = area_mask(area, (camera.width, camera.height)) > 0
+    if (problem := exposure_problem(prepared.views[0].image[inside])) is not None:
+        return FrameUnavailable(f"the area {problem}")
+    if (problem := _moved(prepared.pairs[0], inside)) is not None:
+        return FrameUnavailable(problem)
     rows, columns = np.flatnonzero(inside.any(axis=1)), np.flatnonzero(inside.any(axis=0))
     box = (
         max(int(columns[0]) - MARGIN_PX, 0),
@@ -33,35 +65,85 @@ def area_frame(prepared: Prepared, area: AreaOfInterest, settings: Settings) -> 
         min(int(columns[-1]) + 1 + MARGIN_PX, camera.width),
         min(int(rows[-1]) + 1 + MARGIN_PX, camera.height),
     )
-    return _frame(prepared, box, inside, 1.0)
+    frame = _frame(prepared, box, inside, 1.0)
+    assert frame.stereo is not None
+    if frame.stereo.valid_share < LEAST_VALID:
+        return FrameUnavailable(
+            f"only {100 * frame.stereo.valid_share:.0f} % of the area have depth: it has no texture that could be "
+            "matched; draw it with more of the object's surroundings, light the object from the side, or project a "
+            "pattern on it"
+        )
+    return frame
 
 
-def _frame(prepared: Prepared, box: Box, inside, scale: float) -> Frame | FrameUnavailable:
-    pair = prepared.pairs[0]
+def _moved(pair: Pair, inside: Bools) -> str | None:
+    moved, still = (
+        int(inside[np.rint(pixels[:, 1]).astype(int), np.rint(pixels[:, 0]).astype(int)].sum())
+        for pixels in (pair.moved, pair.features)
+    )
+    if moved < MOVED or moved < MOST_MOVED * (moved + still):
+        return None
+    return (
+        f"{moved} of {moved + still} features in the area lie off their rows together: what is there has moved between "
+        "the exposures; take the pictures again when it is at rest"
+    )
+
+
+def _frame(prepared: Prepared, box: Box, inside: Bools, scale: float) -> Frame:
     reference = prepared.views[0]
-    settings = MatcherSettings()
-    canvas = canvas_over(pair.rectification, box, scale, pair.inverse_depths)
-    found = inverse_depths(canvas, match(canvas, settings), box)
+    window_px = window_for(inside) if scale == 1.0 else LARGE_WINDOW_PX
+    settings = MatcherSettings(window_px=window_px)
+    canvases = [canvas_over(pair.rectification, box, scale, range_in(pair, box)) for pair in prepared.pairs]
+    found = [inverse_depths(canvas, match(canvas, settings), box) for canvas in canvases]
+    per_px = [1 / (reference.camera.focal_px * pair.rectification.baseline_m) for pair in prepared.pairs]
+    fused = fuse(found, [USUAL_SIGMA_PX / scale * unit for unit in per_px])
     depth: Cloud = np.full((reference.camera.height, reference.camera.width), np.nan, dtype=np.float32)
     left, top, right, bottom = box
-    depth[top:bottom, left:right] = 1 / found
-    valid = np.isfinite(depth if inside is None else depth[inside > 0]).mean()
-    evidence = StereoEvidence(
-        pairs=(pair.number,),
-        epipolar_error_px=pair.epipolar_error_px,
-        features=len(pair.matches.disparity_px),
-        valid_share=float(valid),
-        disparities_px=(float(canvas.first_disparity), float(canvas.first_disparity + canvas.disparities)),
-        window_px=settings.window_px,
-        scale=scale,
-    )
+    depth[top:bottom, left:right] = 1 / fused
     return Frame(
         image=reference.image,
         points_m=reference.camera.cloud(depth),
         camera=reference.camera,
         T_base_camera=reference.T_base_camera,
-        noise=StereoNoise(pair.rectification.baseline_m, 0.2),
+        noise=StereoNoise(prepared.pairs[0].rectification.baseline_m, _sigma_px(fused, per_px[0])),
         workspace=prepared.workspace,
         views=prepared.views,
-        stereo=evidence,
+        stereo=_evidence(prepared, canvases[0], window_px, scale, float(np.isfinite(depth[inside]).mean())),
     )
+
+
+def _sigma_px(inverse_depth: Cloud, per_px: float) -> float:
+    """Standard deviation of disparity, px of the first pair, as the matched surfaces show it."""
+    return float(np.clip(structure(inverse_depth.astype(np.float64))[0] / per_px, 0.05, 1.0))
+
+
+def _evidence(prepared: Prepared, canvas: Canvas, window_px: int, scale: float, valid: float) -> StereoEvidence:
+    errors = [pair.epipolar_error_px for pair in prepared.pairs if pair.epipolar_error_px is not None]
+    return StereoEvidence(
+        pairs=tuple(pair.number for pair in prepared.pairs),
+        left_out=prepared.left_out,
+        epipolar_error_px=max(errors, default=None),
+        features=sum(len(pair.features) for pair in prepared.pairs),
+        valid_share=valid,
+        disparities_px=(canvas.first_disparity / scale, (canvas.first_disparity + canvas.disparities) / scale),
+        window_px=window_px,
+        scale=scale,
+    )
+
+
+def window_for(inside: Bools) -> int:
+    """Side of the blocks for an area (height, width), by its narrower side: the object in it is no wider."""
+    points = np.argwhere(inside)[:, ::-1].astype(np.float32)
+    narrow_px = min(cv2.minAreaRect(points)[1])
+    return SMALL_WINDOW_PX if narrow_px < THIN_PX else LARGE_WINDOW_PX
+
+
+def range_in(pair: Pair, box: Box) -> tuple[float, float]:
+    """Smallest and largest inverse depth (1/m) looked for in a box: what was scouted there, or everywhere else."""
+    left, top, right, bottom = (edge // STEP_PX for edge in box)
+    seen = span(pair.scouted[top : bottom + 1, left : right + 1], SCOUTED_TAIL, FEWEST_SCOUTED)
+    if seen is None:
+        return pair.inverse_depths
+    margin = SCOUTED_MARGIN_PX / (pair.rectification.reference.camera.focal_px * pair.rectification.baseline_m)
+    low, high = pair.inverse_depths
+    return max(seen[0] - margin, low), min(seen[1] + margin, high)

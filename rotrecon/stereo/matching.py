@@ -18,10 +18,11 @@ class MatcherSettings:
 
     window_px: int = 5
     """Side of the block whose pictures are compared."""
-    small_step: int = 8
-    """P1 over the block's pixels: the cost of a disparity that changes by one, as on slanted surfaces."""
-    large_step: int = 32
-    """P2 over the block's pixels: the cost of a jump."""
+    small_step: int = 2
+    """P1 over the block's pixels, the cost of a disparity that changes by one: with OpenCV's 8 slanted limbs are
+    flattened, and balls, legs and wires come out too thick."""
+    large_step: int = 16
+    """P2 over the block's pixels, the cost of a jump."""
     left_right_px: int = 1
     """How far disparities found from either picture may differ."""
     unique_percent: int = 10

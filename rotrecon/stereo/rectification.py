@@ -33,6 +33,11 @@ class Rectification:
         """Share of the way from camera to camera that goes along the reference's line of sight, 0 to 1."""
         return abs(float(self.R_reference[0, 2]))
 
+    def depth_ratios(self, pixels: Floats) -> Floats:
+        """Depth in the common planes over depth along the reference's z, (n,), at its pixels (n, 2)."""
+        row = self.R_reference[2] @ np.linalg.inv(self.reference.camera.K)
+        return pixels @ row[:2] + row[2]
+
 
 def rectify(reference: View, other: View) -> Rectification:
     """The rotations that rectify a pair, for any pose but equal ones (Bouguet's, as `cv2.stereoRectify` has it).
@@ -58,4 +63,5 @@ def rectify(reference: View, other: View) -> Rectification:
     side = R_reference @ place
     quarters = int(np.rint(np.arctan2(side[1], side[0]) / (np.pi / 2))) % 4
     turn = np.linalg.matrix_power(QUARTER_TURN, quarters)
-    return Rectification(reference, other, turn @ R_reference, turn @ R_other, baseline_m)
+    turned = (np.asarray(turn @ R, np.float64) for R in (R_reference, R_other))
+    return Rectification(reference, other, *turned, baseline_m)
