@@ -16,6 +16,8 @@ STRIP_ROWS = 64
 """Rows of a picture worked on at once: temporaries stay small beside the pictures."""
 DISPARITY_STEP = 16
 """The matcher looks for a multiple of so many disparities."""
+BORDER_OPENING = np.ones((5, 5), dtype=np.uint8)
+"""Black pixels in no such square are of a dark scene, and not beyond a border."""
 
 Box = tuple[int, int, int, int]
 """Left, top, right, bottom of some pixels, the last two not included."""
@@ -51,14 +53,13 @@ class Canvas:
         """(height, width) grey picture of the other view, shifted by `first_disparity`."""
         return self._picture(self.pair.other, self.pair.R_other, self.first_disparity)
 
+    def reference_seen(self) -> Bytes:
+        """(height, width) 1 where `reference_picture` lies inside the picture that was taken, 0 elsewhere."""
+        return self._seen(self.pair.reference, self.pair.R_reference, 0)
+
     def other_seen(self) -> Bytes:
         """(height, width) 1 where `other_picture` lies inside the picture that was taken, 0 elsewhere."""
-        size, K = self._camera_size(self.pair.other), self._K(self.first_disparity)
-        seen = np.empty((self.size_px[1], self.size_px[0]), dtype=np.uint8)
-        for top, bottom in strips(0, self.size_px[1]):
-            u, v = self._maps(self.pair.other, self.pair.R_other, K, top, bottom)
-            seen[top:bottom] = (u >= 0) & (u <= size[0] - 1) & (v >= 0) & (v <= size[1] - 1)
-        return seen
+        return self._seen(self.pair.other, self.pair.R_other, self.first_disparity)
 
     def homography(self) -> Floats:
         """(3, 3) from pixels (u, v, 1) of the reference to the canvas; the third row gives depth over depth there."""
@@ -73,6 +74,14 @@ class Canvas:
             picture[top:bottom] = cv2.remap(grey, *maps, cv2.INTER_CUBIC, borderMode=cv2.BORDER_REPLICATE)
         return picture
 
+    def _seen(self, view: View, R: Floats, shift_px: int) -> Bytes:
+        taken = _taken(view.image)
+        seen = np.empty((self.size_px[1], self.size_px[0]), dtype=np.uint8)
+        for top, bottom in strips(0, self.size_px[1]):
+            maps = self._maps(view, R, self._K(shift_px), top, bottom)
+            seen[top:bottom] = cv2.remap(taken, *maps, cv2.INTER_NEAREST, borderMode=cv2.BORDER_CONSTANT)
+        return seen
+
     def _maps(
         self, view: View, R: Floats, K: Floats, top: int, bottom: int
     ) -> tuple[NDArray[np.float32], NDArray[np.float32]]:
@@ -86,9 +95,14 @@ class Canvas:
         u, v = self.principal_px
         return np.array([[self.focal_px, 0.0, u + shift_px], [0.0, self.focal_px, v], [0.0, 0.0, 1.0]])
 
-    @staticmethod
-    def _camera_size(view: View) -> tuple[int, int]:
-        return view.camera.width, view.camera.height
+
+def _taken(image: Bytes) -> Bytes:
+    """(h, w) 1 where something was recorded: pictures that were undistorted are black beyond their borders."""
+    black = (image.max(axis=2) == 0).astype(np.uint8)
+    if not black.any():
+        return np.ones(black.shape, dtype=np.uint8)
+    beyond = np.asarray(cv2.morphologyEx(black, cv2.MORPH_OPEN, BORDER_OPENING), dtype=np.uint8)
+    return np.asarray(1 - beyond, dtype=np.uint8)
 
 
 def strips(start: int, end: int) -> list[tuple[int, int]]:

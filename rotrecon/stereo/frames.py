@@ -6,11 +6,10 @@ import numpy as np
 from rotrecon.arrays import Bools, Cloud
 from rotrecon.drawing import AreaOfInterest, area_mask, check_area
 from rotrecon.frame import Frame, FrameUnavailable, StereoEvidence, StereoNoise
-from rotrecon.noise import structure
 from rotrecon.stereo.canvas import Box, Canvas, canvas_over, whole
 from rotrecon.stereo.carrying import inverse_depths
 from rotrecon.stereo.exposure import exposure_problem
-from rotrecon.stereo.fusion import fuse
+from rotrecon.stereo.fusion import fuse, fused_sigma
 from rotrecon.stereo.matching import MatcherSettings, match
 from rotrecon.stereo.preparing import Pair, Prepared
 from rotrecon.stereo.scouting import STEP_PX, span
@@ -94,9 +93,13 @@ def _frame(prepared: Prepared, box: Box, inside: Bools, scale: float) -> Frame:
     window_px = window_for(inside) if scale == 1.0 else LARGE_WINDOW_PX
     settings = MatcherSettings(window_px=window_px)
     canvases = [canvas_over(pair.rectification, box, scale, range_in(pair, box)) for pair in prepared.pairs]
-    found = [inverse_depths(canvas, match(canvas, settings), box) for canvas in canvases]
-    per_px = [1 / (reference.camera.focal_px * pair.rectification.baseline_m) for pair in prepared.pairs]
-    fused = fuse(found, [USUAL_SIGMA_PX / scale * unit for unit in per_px])
+    matched = [match(canvas, settings) for canvas in canvases]
+    found = [inverse_depths(canvas, one.disparity_px, box) for canvas, one in zip(canvases, matched, strict=True)]
+    sigmas = [
+        (USUAL_SIGMA_PX if one.sigma_px is None else one.sigma_px) / canvas.disparity_of_inverse_depth
+        for canvas, one in zip(canvases, matched, strict=True)
+    ]
+    fused = fuse(found, sigmas)
     depth: Cloud = np.full((reference.camera.height, reference.camera.width), np.nan, dtype=np.float32)
     left, top, right, bottom = box
     depth[top:bottom, left:right] = 1 / fused
@@ -105,16 +108,17 @@ def _frame(prepared: Prepared, box: Box, inside: Bools, scale: float) -> Frame:
         points_m=reference.camera.cloud(depth),
         camera=reference.camera,
         T_base_camera=reference.T_base_camera,
-        noise=StereoNoise(prepared.pairs[0].rectification.baseline_m, _sigma_px(fused, per_px[0])),
+        noise=_noise(prepared, fused_sigma(sigmas, [pair.rectification.R_reference[0] for pair in prepared.pairs])),
         workspace=prepared.workspace,
         views=prepared.views,
         stereo=_evidence(prepared, canvases[0], window_px, scale, float(np.isfinite(depth[inside]).mean())),
     )
 
 
-def _sigma_px(inverse_depth: Cloud, per_px: float) -> float:
-    """Standard deviation of disparity, px of the first pair, as the matched surfaces show it."""
-    return float(np.clip(structure(inverse_depth.astype(np.float64))[0] / per_px, 0.05, 1.0))
+def _noise(prepared: Prepared, sigma: float) -> StereoNoise:
+    """That of inverse depth (1/m), said as disparity of the first pair."""
+    baseline_m = prepared.pairs[0].rectification.baseline_m
+    return StereoNoise(baseline_m, sigma * prepared.views[0].camera.focal_px * baseline_m)
 
 
 def _evidence(prepared: Prepared, canvas: Canvas, window_px: int, scale: float, valid: float) -> StereoEvidence:

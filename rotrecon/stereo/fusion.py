@@ -4,10 +4,13 @@ from collections.abc import Sequence
 
 import numpy as np
 
-from rotrecon.arrays import Cloud
+from rotrecon.arrays import Cloud, Floats
 
 AGREEING_SIGMAS = 3.0
 """Standard deviations of their difference that two depths of one surface may lie apart."""
+
+SHARED = 0.5
+"""Share of a disparity's variance that is the reference picture's: both pictures are as noisy."""
 
 
 def fuse(inverse_depths: Sequence[Cloud], sigmas: Sequence[float]) -> Cloud:
@@ -35,3 +38,19 @@ def fuse(inverse_depths: Sequence[Cloud], sigmas: Sequence[float]) -> Cloud:
     seen = np.isfinite(stack).sum(axis=0)
     fused[(seen > 1) & (most < 2)] = np.nan
     return fused
+
+
+def fused_sigma(sigmas: Sequence[float], toward: Sequence[Floats]) -> float:
+    """Standard deviation of the mean of inverse depths that `fuse` makes where all pairs agree.
+
+    Half of a disparity's variance comes from the reference's picture, which all pairs share: it moves all of them alike
+    where the other cameras stand in the same direction, `toward` (3,) unit each, and not where they stand at right
+    angles.
+    """
+    sigma, directions = np.asarray(sigmas), np.stack(toward)
+    weight = 1 / np.square(sigma)
+    weight /= weight.sum()
+    shared = SHARED * directions @ directions.T
+    np.fill_diagonal(shared, 1.0)
+    covariance = shared * np.outer(sigma, sigma)
+    return float(np.sqrt(weight @ covariance @ weight))

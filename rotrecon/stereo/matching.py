@@ -5,8 +5,9 @@ from dataclasses import dataclass
 import cv2
 import numpy as np
 
-from rotrecon.arrays import Bytes, Cloud
+from rotrecon.arrays import Cloud, freeze
 from rotrecon.stereo.canvas import Canvas
+from rotrecon.stereo.disparity_noise import disparity_sigma_px
 
 SUBPIXEL_STEPS = 16
 """OpenCV's disparities are whole numbers of sixteenths."""
@@ -55,21 +56,35 @@ def matcher_of(canvas: Canvas, settings: MatcherSettings) -> cv2.StereoSGBM:
     )
 
 
-def match(canvas: Canvas, settings: MatcherSettings) -> Cloud:
-    """Disparity (height, width) of the canvas, px; negative where there is none."""
+@dataclass(frozen=True, eq=False)
+class Matched:
+    """What the matcher found on a canvas."""
+
+    disparity_px: Cloud
+    """(height, width) of the canvas; negative where there is none."""
+    sigma_px: float | None
+    """Standard deviation of these; None for too few."""
+
+    def __post_init__(self) -> None:
+        freeze(self)
+
+
+def match(canvas: Canvas, settings: MatcherSettings) -> Matched:
+    """Match a canvas's two pictures."""
     reference, other = canvas.reference_picture(), canvas.other_picture()
-    steps = np.asarray(matcher_of(canvas, settings).compute(reference, other))
-    return _seen_by_both(steps, canvas)
+    disparity = matcher_of(canvas, settings).compute(reference, other).astype(np.float32)
+    disparity /= np.float32(SUBPIXEL_STEPS)
+    _drop_unseen(disparity, canvas)
+    return Matched(disparity, disparity_sigma_px(reference, other, disparity))
 
 
-def _seen_by_both(steps: np.ndarray, canvas: Canvas) -> Cloud:
-    """Disparities without those whose match lies beyond the border of the other picture."""
-    seen: Bytes = canvas.other_seen()
-    disparity = steps.astype(np.float32) / np.float32(SUBPIXEL_STEPS)
+def _drop_unseen(disparity: Cloud, canvas: Canvas) -> None:
+    """Take out what lies beyond the border of the reference's picture, or whose match lies beyond that of the other."""
+    disparity[canvas.reference_seen() == 0] = -1.0
+    seen = canvas.other_seen()
     if seen.all():
-        return disparity
+        return
     rows, columns = np.nonzero(disparity >= 0)
     place = np.maximum(columns - np.rint(disparity[rows, columns]).astype(np.intp), 0)
     lost = seen[rows, place] == 0
     disparity[rows[lost], columns[lost]] = -1.0
-    return disparity

@@ -63,5 +63,5 @@ def rectify(reference: View, other: View) -> Rectification:
     side = R_reference @ place
     quarters = int(np.rint(np.arctan2(side[1], side[0]) / (np.pi / 2))) % 4
     turn = np.linalg.matrix_power(QUARTER_TURN, quarters)
-    turned = (np.asarray(turn @ R, np.float64) for R in (R_reference, R_other))
-    return Rectification(reference, other, *turned, baseline_m)
+    turned = [np.asarray(turn @ R, np.float64) for R in (R_reference, R_other)]
+    return Rectification(reference, other, turned[0], turned[1], baseline_m)

@@ -28,7 +28,7 @@ def scout(pair: Rectification, limits: Limits) -> Cloud:
     far, near = limits.farthest_m, limits.nearest_m
     sought = (0.0 if far is None else 1 / far, widest if near is None else 1 / near)
     canvas = canvas_over(pair, whole(camera), 1 / STEP_PX, sought)
-    return inverse_depths(canvas, match(canvas, MATCHER), whole(camera), STEP_PX)
+    return inverse_depths(canvas, match(canvas, MATCHER).disparity_px, whole(camera), STEP_PX)
 
 
 def span(inverse_depth: Cloud, tail: float, fewest: int) -> tuple[float, float] | None:
