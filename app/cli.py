@@ -8,7 +8,7 @@ from typing import Annotated, Literal
 
 import typer
 
-from app.describe import describe, describe_result
+from app.describe import describe, describe_result, matching_notes
 from app.drawing_text import parse_area, parse_axis, stroke_text
 from app.flaw_text import FLAW_HELP, parse_flaws
 from app.host import HostError
@@ -147,7 +147,7 @@ def serve(
     settings = Settings(method=method, layers=layers, tools=default_tools() if tools is None else read_tools(tools))
     from app.serving import serve as serve_console  # viser takes a second to import, which no other command needs
 
-    serve_console(frame, capture.name, settings, host, port, notes=capture.notes)
+    serve_console(frame, capture.name, settings, host, port, notes=(*capture.notes, *matching_notes(frame)))
 
 
 def _demo() -> Capture:

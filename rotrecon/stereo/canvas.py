@@ -98,7 +98,7 @@ class Canvas:
 
 def _taken(image: Bytes) -> Bytes:
     """(h, w) 1 where something was recorded: pictures that were undistorted are black beyond their borders."""
-    black = (image.max(axis=2) == 0).astype(np.uint8)
+    black: Bytes = np.asarray(image.max(axis=2) == 0, dtype=np.uint8)
     if not black.any():
         return np.ones(black.shape, dtype=np.uint8)
     beyond = np.asarray(cv2.morphologyEx(black, cv2.MORPH_OPEN, BORDER_OPENING), dtype=np.uint8)
