@@ -19,6 +19,9 @@ FEWEST = 12
 """Fewer matched features say nothing."""
 LEAST_AGREEING = 0.5
 """Share of the features that must agree on how far rows are off, for anything to be said."""
+LEAST_STILL, ALL_AGREEING = 0.15, 0.8
+"""Where so many features lie on their rows, and fewer than these agree on how far rows are off, the others have moved:
+an error of pose or calibration moves all of them."""
 WINDOW_PX = 15
 """Side of the window in which a feature is found again to a fraction of a pixel."""
 MOST_REFINED = 400
@@ -51,17 +54,11 @@ def check_epipolar(pair: Rectification, reference: Features, other: Features) ->
     off_px = off_rows(matches)
     on_rows = on_row(matches)
     behind = on_rows & (matches.disparity_px < -ROW_TOLERANCE_PX)
-    wrong = off_px > WORST_PX or behind.sum() > on_rows.sum() / 2
-    if wrong and _explained_by_swapping(pair, reference, other):
-        return "its picture and that of view 1 are swapped; exchange the two files in scene.toml"
-    if off_px > WORST_PX:
-        return _off(off_px)
-    if behind.sum() > on_rows.sum() / 2:
-        return "what it shows would lie behind the cameras; correct T_base_camera of both views"
+    turned_round = behind.sum() > on_rows.sum() / 2
     good = matches.chosen(on_rows & ~behind)
-    error_px = refined_error_px(pair, good)
-    if error_px is not None and error_px > WORST_PX:
-        return _off(error_px)
+    error_px = off_px if off_px > 0 or turned_round else refined_error_px(pair, good)
+    if turned_round or (error_px is not None and error_px > WORST_PX):
+        return _what_is_wrong(pair, reference, other, error_px)
     return Checked(good, _moved_together(matches, ~on_rows), error_px)
 
 
@@ -82,7 +79,9 @@ def off_rows(matches: Matches) -> float:
         weight = 1 / (1 + np.square((matches.row_error_px - terms @ solution) / ROW_TOLERANCE_PX))
         solution = np.linalg.lstsq(terms * weight[:, None], matches.row_error_px * weight, rcond=None)[0]
     agreeing = np.abs(matches.row_error_px - terms @ solution) < ROW_TOLERANCE_PX
-    if agreeing.mean() < LEAST_AGREEING or on_row(matches).mean() > LEAST_AGREEING:
+    still = float(on_row(matches).mean())
+    moved = still > LEAST_STILL and agreeing.mean() < ALL_AGREEING
+    if agreeing.mean() < LEAST_AGREEING or still > LEAST_AGREEING or moved:
         return 0.0
     return float(np.median(np.abs(matches.row_error_px[agreeing])))
 
@@ -137,8 +136,12 @@ def _moved_together(matches: Matches, off: Bools) -> Floats:
     return place[alike.sum(axis=1) > NEIGHBOURS]
 
 
-def _off(error_px: float) -> str:
+def _what_is_wrong(pair: Rectification, reference: Features, other: Features, error_px: float | None) -> str:
+    if _explained_by_swapping(pair, reference, other):
+        return "its picture and that of view 1 are swapped; exchange the two files in scene.toml"
+    if error_px is None or error_px <= WORST_PX:
+        return "what it shows would lie behind the cameras; correct T_base_camera of both views"
     return (
         f"features lie {error_px:.1f} px off the rows where its pose and camera put them, more than {WORST_PX:g} px; "
-        "calibrate the cameras and the arm again, or take the pictures with the arm at rest"
+        "calibrate the cameras and the arm again, or take the pictures with the arm and the objects at rest"
     )

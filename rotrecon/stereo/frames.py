@@ -30,8 +30,8 @@ SCOUTED_MARGIN_PX = 8.0
 """Disparities of the full picture beyond those scouted: two of the pixels in which that is done."""
 USUAL_SIGMA_PX = 0.15
 """Of disparity, measured on rendered pairs with fine texture."""
-LEAST_VALID = 0.05
-"""Share of an area with depth, below which nothing in it is measured."""
+LEAST_VALID = 0.15
+"""Share of an area or a frame with depth, below which nothing in it is measured: a twelfth of mere noise has depth."""
 MOVED = 5
 """Features in an area that have left their rows together: fewer may be chance."""
 MOST_MOVED = 0.3
@@ -42,7 +42,8 @@ def whole_frame(prepared: Prepared) -> Frame | FrameUnavailable:
     """The whole frame matched at half resolution, for display."""
     camera = prepared.views[0].camera
     everything = np.ones((camera.height, camera.width), dtype=np.bool_)
-    return _frame(prepared, whole(camera), everything, COARSE)
+    frame = _frame(prepared, whole(camera), everything, COARSE)
+    return _too_empty(frame, "picture") or frame
 
 
 def area_frame(prepared: Prepared, area: AreaOfInterest) -> Frame | FrameUnavailable:
@@ -65,14 +66,17 @@ def area_frame(prepared: Prepared, area: AreaOfInterest) -> Frame | FrameUnavail
         min(int(rows[-1]) + 1 + MARGIN_PX, camera.height),
     )
     frame = _frame(prepared, box, inside, 1.0)
+    return _too_empty(frame, "area") or frame
+
+
+def _too_empty(frame: Frame, what: str) -> FrameUnavailable | None:
     assert frame.stereo is not None
-    if frame.stereo.valid_share < LEAST_VALID:
-        return FrameUnavailable(
-            f"only {100 * frame.stereo.valid_share:.0f} % of the area have depth: it has no texture that could be "
-            "matched; draw it with more of the object's surroundings, light the object from the side, or project a "
-            "pattern on it"
-        )
-    return frame
+    if frame.stereo.valid_share >= LEAST_VALID:
+        return None
+    return FrameUnavailable(
+        f"only {100 * frame.stereo.valid_share:.0f} % of the {what} have depth: there is no texture that could be "
+        "matched; take in more of the object's surroundings, light the object from the side, or project a pattern on it"
+    )
 
 
 def _moved(pair: Pair, inside: Bools) -> str | None:

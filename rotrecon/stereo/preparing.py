@@ -8,7 +8,7 @@ from rotrecon.arrays import Cloud, Floats, freeze
 from rotrecon.frame import FrameUnavailable, View
 from rotrecon.stereo.epipolar import FEWEST, check_epipolar
 from rotrecon.stereo.exposure import exposure_problem
-from rotrecon.stereo.features import Features, features_of
+from rotrecon.stereo.features import Features, Matches, features_of
 from rotrecon.stereo.geometry import pair_of
 from rotrecon.stereo.limits import NEAREST_M, Limits, depth_limits
 from rotrecon.stereo.rectification import Rectification
@@ -21,12 +21,14 @@ TAIL = 0.005
 """Share of features and scouted pixels at either end that may be wrong."""
 FEWEST_SCOUTED = 30
 """Pixels at a quarter of the resolution: fewer are no surface."""
+NEAR = 0.9
+"""Quantile of disparities: nearer surfaces are few."""
 LEAST_PARALLAX_PX = 6.0
 """Disparity of the nearest surfaces below which their depth would err by 3 % and more."""
 GOOD_PARALLAX_PX = 60.0
 """Disparity that is worth moving the camera for: depth then errs by some 0.3 %."""
-LEAST_SCOUTED = 0.05
-"""Share of a picture below which it has no texture that could be matched."""
+LEAST_SCOUTED = 0.25
+"""Share of a picture that must be found without features: a twelfth of mere noise is."""
 MOST_PAIRS = 4
 """More pairs take time and share the reference's picture: a fifth one lessens the noise by less than a twentieth."""
 
@@ -49,13 +51,11 @@ class Pair:
     epipolar_error_px: float | None
     """How far features lie off their rows, in the median; None for too few to say."""
 
+    parallax_px: float
+    """Disparity of near surfaces: nine of ten are smaller."""
+
     def __post_init__(self) -> None:
         freeze(self)
-
-    @property
-    def parallax_px(self) -> float:
-        """Disparity of the nearest surfaces."""
-        return self.inverse_depths[1] * self.rectification.reference.camera.focal_px * self.rectification.baseline_m
 
 
 @dataclass(frozen=True, eq=False)
@@ -97,22 +97,23 @@ def _prepare_pair(views: tuple[View, ...], number: int, reference: Features, lim
     if inverse_depths is None:
         share = 100 * float(np.isfinite(scouted).mean())
         return f"too little contrast: {share:.0f} % of view 1 can be found in it; light the scene, or expose for longer"
-    pair = Pair(
-        number,
-        rectification,
-        scouted,
-        inverse_depths,
-        checked.good.reference_px,
-        checked.moved,
-        checked.error_px,
-    )
-    if pair.parallax_px < LEAST_PARALLAX_PX:
-        needed_m = rectification.baseline_m * GOOD_PARALLAX_PX / max(pair.parallax_px, 1.0)
+    parallax_px = _parallax_px(rectification, checked.good, scouted)
+    if parallax_px < LEAST_PARALLAX_PX:
+        needed_m = rectification.baseline_m * GOOD_PARALLAX_PX / max(parallax_px, 1.0)
         return (
             f"its camera is only {1000 * rectification.baseline_m:.0f} mm beside that of view 1, which moves near "
-            f"surfaces by {pair.parallax_px:.1f} px; move it by {1000 * needed_m:.0f} mm or more"
+            f"surfaces by {parallax_px:.1f} px; move it by {1000 * needed_m:.0f} mm or more"
         )
-    return pair
+    good_px = checked.good.reference_px
+    return Pair(number, rectification, scouted, inverse_depths, good_px, checked.moved, checked.error_px, parallax_px)
+
+
+def _parallax_px(pair: Rectification, good: Matches, scouted: Cloud) -> float:
+    """Disparity of near surfaces, of features where there are enough."""
+    if len(good.disparity_px) >= FEWEST:
+        return float(np.quantile(good.disparity_px, NEAR))
+    ends = span(scouted, 1 - NEAR, 1)
+    return 0.0 if ends is None else ends[1] * pair.reference.camera.focal_px * pair.baseline_m
 
 
 def _where_to_look(features: Floats, scouted: Cloud, limits: Limits) -> tuple[float, float] | None:
