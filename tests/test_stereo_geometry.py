@@ -7,7 +7,7 @@ from hypothesis import strategies as st
 
 from rotrecon.camera import PinholeCamera, inverse, transform
 from rotrecon.frame import View
-from rotrecon.stereo.canvas import canvas_over, through, whole
+from rotrecon.stereo.canvas import beyond, canvas_over, through, whole
 from rotrecon.stereo.carrying import inverse_depths
 from rotrecon.stereo.features import in_common_planes
 from rotrecon.stereo.fusion import fuse, fused_sigma
@@ -88,8 +88,8 @@ def test_a_rectified_pair_is_not_interpolated():
     canvas = canvas_over(rectification, whole(CAMERA_SQUARE), 1.0, (0.0, 1.0))
     left, top = (round(float(edge)) for edge in canvas.principal_px - CAMERA_SQUARE.K[:2, 2])
     assert np.array_equal(canvas.reference_picture()[top : top + 48, left : left + 64], image)
-    assert canvas.reference_seen()[top : top + 48, left : left + 64].all()
-    assert not canvas.reference_seen()[:, : left - 1].any()
+    assert not beyond(canvas.reference_picture())[top : top + 48, left : left + 64].any()
+    assert beyond(canvas.reference_picture())[top : top + 48, : left - 1].all()
 
 
 CAMERA_SQUARE = PinholeCamera(64, 48, np.array([[60.0, 0, 30.5], [0, 60.0, 24.5], [0, 0, 1]]))

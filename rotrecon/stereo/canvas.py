@@ -5,7 +5,6 @@ from math import ceil, floor
 
 import cv2
 import numpy as np
-from numpy.typing import NDArray
 
 from rotrecon.arrays import Bytes, Floats, freeze
 from rotrecon.camera import PinholeCamera
@@ -46,20 +45,12 @@ class Canvas:
         return self.focal_px * self.pair.baseline_m
 
     def reference_picture(self) -> Bytes:
-        """(height, width) grey picture of the reference in the common plane."""
+        """(height, width) grey picture of the reference in the common plane; black beyond what was recorded."""
         return self._picture(self.pair.reference, self.pair.R_reference, 0)
 
     def other_picture(self) -> Bytes:
         """(height, width) grey picture of the other view, shifted by `first_disparity`."""
         return self._picture(self.pair.other, self.pair.R_other, self.first_disparity)
-
-    def reference_seen(self) -> Bytes:
-        """(height, width) 1 where `reference_picture` lies inside the picture that was taken, 0 elsewhere."""
-        return self._seen(self.pair.reference, self.pair.R_reference, 0)
-
-    def other_seen(self) -> Bytes:
-        """(height, width) 1 where `other_picture` lies inside the picture that was taken, 0 elsewhere."""
-        return self._seen(self.pair.other, self.pair.R_other, self.first_disparity)
 
     def homography(self) -> Floats:
         """(3, 3) from pixels (u, v, 1) of the reference to the canvas; the third row gives depth over depth there."""
@@ -68,41 +59,20 @@ class Canvas:
 
     def _picture(self, view: View, R: Floats, shift_px: int) -> Bytes:
         grey = cv2.cvtColor(view.image, cv2.COLOR_RGB2GRAY)
-        picture = np.empty((self.size_px[1], self.size_px[0]), dtype=np.uint8)
-        for top, bottom in strips(0, self.size_px[1]):
-            maps = self._maps(view, R, self._K(shift_px), top, bottom)
-            picture[top:bottom] = cv2.remap(grey, *maps, cv2.INTER_CUBIC, borderMode=cv2.BORDER_REPLICATE)
-        return picture
-
-    def _seen(self, view: View, R: Floats, shift_px: int) -> Bytes:
-        taken = _taken(view.image)
-        seen = np.empty((self.size_px[1], self.size_px[0]), dtype=np.uint8)
-        for top, bottom in strips(0, self.size_px[1]):
-            maps = self._maps(view, R, self._K(shift_px), top, bottom)
-            seen[top:bottom] = cv2.remap(taken, *maps, cv2.INTER_NEAREST, borderMode=cv2.BORDER_CONSTANT)
-        return seen
-
-    def _maps(
-        self, view: View, R: Floats, K: Floats, top: int, bottom: int
-    ) -> tuple[NDArray[np.float32], NDArray[np.float32]]:
-        strip = K.copy()
-        strip[1, 2] -= top
-        size = (self.size_px[0], bottom - top)
-        u, v = cv2.initUndistortRectifyMap(view.camera.K, np.zeros(5), R, strip, size, cv2.CV_32FC1)
-        return np.asarray(u, np.float32), np.asarray(v, np.float32)
+        to_view = view.camera.K @ R.T @ np.linalg.inv(self._K(shift_px))
+        how = cv2.INTER_CUBIC | cv2.WARP_INVERSE_MAP
+        picture = cv2.warpPerspective(grey, to_view, self.size_px, flags=how, borderMode=cv2.BORDER_CONSTANT)
+        return np.asarray(picture, dtype=np.uint8)
 
     def _K(self, shift_px: int) -> Floats:
         u, v = self.principal_px
         return np.array([[self.focal_px, 0.0, u + shift_px], [0.0, self.focal_px, v], [0.0, 0.0, 1.0]])
 
 
-def _taken(image: Bytes) -> Bytes:
-    """(h, w) 1 where something was recorded: pictures that were undistorted are black beyond their borders."""
-    black: Bytes = np.asarray(image.max(axis=2) == 0, dtype=np.uint8)
-    if not black.any():
-        return np.ones(black.shape, dtype=np.uint8)
-    beyond = np.asarray(cv2.morphologyEx(black, cv2.MORPH_OPEN, BORDER_OPENING), dtype=np.uint8)
-    return np.asarray(1 - beyond, dtype=np.uint8)
+def beyond(picture: Bytes) -> Bytes:
+    """(h, w) above 0 where nothing was recorded: rectified and undistorted pictures are black beyond their borders."""
+    black = cv2.inRange(picture, np.zeros(1), np.zeros(1))
+    return np.asarray(cv2.morphologyEx(black, cv2.MORPH_OPEN, BORDER_OPENING), dtype=np.uint8)
 
 
 def strips(start: int, end: int) -> list[tuple[int, int]]:

@@ -11,7 +11,7 @@ from rotrecon.frame import View
 from rotrecon.stereo.canvas import through
 from rotrecon.stereo.rectification import Rectification
 
-MOST_FEATURES = 2500
+MOST_FEATURES = 2000
 """A picture: enough to see every object that has texture; matching takes time with the square of it."""
 DISTINCT = 0.75
 """Distance of the best match over that of the second best, above which it may be either (Lowe 2004 has 0.8)."""
@@ -70,8 +70,12 @@ def matched(reference: Features, other: Features) -> tuple[Floats, Floats]:
     """Pixels (N, 2) of the reference and of the other picture that show the same, both agreeing on it."""
     if len(reference.pixels) < 2 or len(other.pixels) < 2:
         return np.empty((0, 2)), np.empty((0, 2))
-    forth, back = _distinct(reference, other), _distinct(other, reference)
-    pairs = np.array([(a, b) for a, b in forth.items() if back.get(b) == a], dtype=np.intp).reshape(-1, 2)
+    matcher = cv2.BFMatcher(cv2.NORM_HAMMING)
+    forth = matcher.knnMatch(reference.descriptors, other.descriptors, k=2)
+    back = {one.queryIdx: one.trainIdx for one in matcher.match(other.descriptors, reference.descriptors)}
+    distinct = [best for best, second in forth if best.distance < DISTINCT * second.distance]
+    both = [(one.queryIdx, one.trainIdx) for one in distinct if back[one.trainIdx] == one.queryIdx]
+    pairs = np.array(both, dtype=np.intp).reshape(-1, 2)
     return reference.pixels[pairs[:, 0]], other.pixels[pairs[:, 1]]
 
 
@@ -81,9 +85,3 @@ def in_common_planes(pair: Rectification, reference_px: Floats, other_px: Floats
     first = through(K @ pair.R_reference @ np.linalg.inv(pair.reference.camera.K), reference_px)
     second = through(K @ pair.R_other @ np.linalg.inv(pair.other.camera.K), other_px)
     return Matches(reference_px, other_px, first[:, 0] - second[:, 0], second[:, 1] - first[:, 1])
-
-
-def _distinct(a: Features, b: Features) -> dict[int, int]:
-    """Best match of each feature of a among those of b, where the second best is clearly worse."""
-    found = cv2.BFMatcher(cv2.NORM_HAMMING).knnMatch(a.descriptors, b.descriptors, k=2)
-    return {best.queryIdx: best.trainIdx for best, second in found if best.distance < DISTINCT * second.distance}

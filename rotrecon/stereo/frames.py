@@ -42,7 +42,7 @@ def whole_frame(prepared: Prepared) -> Frame | FrameUnavailable:
     """The whole frame matched at half resolution, for display."""
     camera = prepared.views[0].camera
     everything = np.ones((camera.height, camera.width), dtype=np.bool_)
-    frame = _frame(prepared, whole(camera), everything, COARSE)
+    frame = _frame(prepared, whole(camera), everything, COARSE, LARGE_WINDOW_PX)
     return _too_empty(frame, "picture") or frame
 
 
@@ -65,7 +65,7 @@ def area_frame(prepared: Prepared, area: AreaOfInterest) -> Frame | FrameUnavail
         min(int(columns[-1]) + 1 + MARGIN_PX, camera.width),
         min(int(rows[-1]) + 1 + MARGIN_PX, camera.height),
     )
-    frame = _frame(prepared, box, inside, 1.0)
+    frame = _frame(prepared, box, inside, 1.0, window_for(area))
     return _too_empty(frame, "area") or frame
 
 
@@ -92,9 +92,8 @@ def _moved(pair: Pair, inside: Bools) -> str | None:
     )
 
 
-def _frame(prepared: Prepared, box: Box, inside: Bools, scale: float) -> Frame:
+def _frame(prepared: Prepared, box: Box, inside: Bools, scale: float, window_px: int) -> Frame:
     reference = prepared.views[0]
-    window_px = window_for(inside) if scale == 1.0 else LARGE_WINDOW_PX
     settings = MatcherSettings(window_px=window_px)
     canvases = [canvas_over(pair.rectification, box, scale, range_in(pair, box)) for pair in prepared.pairs]
     matched = [match(canvas, settings) for canvas in canvases]
@@ -115,7 +114,7 @@ def _frame(prepared: Prepared, box: Box, inside: Bools, scale: float) -> Frame:
         noise=_noise(prepared, fused_sigma(sigmas, [pair.rectification.R_reference[0] for pair in prepared.pairs])),
         workspace=prepared.workspace,
         views=prepared.views,
-        stereo=_evidence(prepared, canvases[0], window_px, scale, float(np.isfinite(depth[inside]).mean())),
+        stereo=_evidence(prepared, canvases[0], window_px, scale, _share(np.isfinite(depth), inside)),
     )
 
 
@@ -139,10 +138,13 @@ def _evidence(prepared: Prepared, canvas: Canvas, window_px: int, scale: float, 
     )
 
 
-def window_for(inside: Bools) -> int:
-    """Side of the blocks for an area (height, width), by its narrower side: the object in it is no wider."""
-    points = np.argwhere(inside)[:, ::-1].astype(np.float32)
-    narrow_px = min(cv2.minAreaRect(points)[1])
+def _share(valid: Bools, inside: Bools) -> float:
+    return np.count_nonzero(valid & inside) / np.count_nonzero(inside)
+
+
+def window_for(area: AreaOfInterest) -> int:
+    """Side of the blocks for an area, by its narrower side: the object in it is no wider."""
+    narrow_px = min(cv2.minAreaRect(np.array(area.vertices_px, dtype=np.float32))[1])
     return SMALL_WINDOW_PX if narrow_px < THIN_PX else LARGE_WINDOW_PX
 
 

@@ -7,7 +7,7 @@ import numpy as np
 
 from rotrecon.arrays import Cloud, freeze
 from rotrecon.stereo.canvas import Canvas
-from rotrecon.stereo.disparity_noise import disparity_sigma_px
+from rotrecon.stereo.disparity_noise import check_against_pictures
 
 SUBPIXEL_STEPS = 16
 """OpenCV's disparities are whole numbers of sixteenths."""
@@ -74,17 +74,4 @@ def match(canvas: Canvas, settings: MatcherSettings) -> Matched:
     reference, other = canvas.reference_picture(), canvas.other_picture()
     disparity = matcher_of(canvas, settings).compute(reference, other).astype(np.float32)
     disparity /= np.float32(SUBPIXEL_STEPS)
-    _drop_unseen(disparity, canvas)
-    return Matched(disparity, disparity_sigma_px(reference, other, disparity))
-
-
-def _drop_unseen(disparity: Cloud, canvas: Canvas) -> None:
-    """Take out what lies beyond the border of the reference's picture, or whose match lies beyond that of the other."""
-    disparity[canvas.reference_seen() == 0] = -1.0
-    seen = canvas.other_seen()
-    if seen.all():
-        return
-    rows, columns = np.nonzero(disparity >= 0)
-    place = np.maximum(columns - np.rint(disparity[rows, columns]).astype(np.intp), 0)
-    lost = seen[rows, place] == 0
-    disparity[rows[lost], columns[lost]] = -1.0
+    return Matched(disparity, check_against_pictures(reference, other, disparity))

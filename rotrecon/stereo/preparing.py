@@ -71,7 +71,7 @@ class Prepared:
 
 def prepare(views: tuple[View, ...], workspace: Workspace) -> Prepared | FrameUnavailable:
     """Choose the pairs of the first view with the others that are worth matching; or say why there are none."""
-    if (problem := exposure_problem(views[0].image)) is not None:
+    if (problem := exposure_problem(views[0].image.reshape(-1, 3))) is not None:
         return FrameUnavailable(f"the picture of view 1 {problem}")
     reference = features_of(views[0])
     limits = depth_limits(workspace, views[0].T_base_camera)
@@ -84,7 +84,7 @@ def prepare(views: tuple[View, ...], workspace: Workspace) -> Prepared | FrameUn
 
 
 def _prepare_pair(views: tuple[View, ...], number: int, reference: Features, limits: Limits) -> Pair | str:
-    if (problem := exposure_problem(views[number].image)) is not None:
+    if (problem := exposure_problem(views[number].image.reshape(-1, 3))) is not None:
         return f"its picture {problem}"
     rectification = pair_of(views, number, limits)
     if isinstance(rectification, str):
