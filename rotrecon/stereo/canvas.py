@@ -97,9 +97,13 @@ def canvas_over(pair: Rectification, box: Box, scale: float, inverse_depths: tup
     high = focal_px * pair.baseline_m * inverse_depths[1] / float(ratios.min())
     first = floor(low)
     disparities = DISPARITY_STEP * max(ceil((ceil(high) + 1 - first) / DISPARITY_STEP), 1)
-    corner = np.floor(border.min(axis=0) - anchor) - 1
+    seen = through(K @ pair.R_other @ np.linalg.inv(pair.other.camera.K), corners(whole(pair.other.camera)))
+    # beyond these nothing of the reference can be in the other picture, at any of the disparities
+    first_px = np.maximum(border.min(axis=0), seen.min(axis=0) + np.array([low, 0.0]))
+    last_px = np.maximum(np.minimum(border.max(axis=0), seen.max(axis=0) + np.array([high, 0.0])), first_px)
+    corner = np.floor(first_px - anchor) - 2
     corner[0] -= disparities
-    extent = np.ceil(border.max(axis=0) - anchor) + 2 - corner
+    extent = np.ceil(last_px - anchor) + 3 - corner
     return Canvas(pair, focal_px, -anchor - corner, (int(extent[0]), int(extent[1])), first, disparities)
 
 

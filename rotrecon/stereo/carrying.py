@@ -17,16 +17,25 @@ def inverse_depths(canvas: Canvas, disparity: Cloud, box: Box, step_px: int = 1)
     `disparity` (height, width) is the canvas's, px, negative where there is none. It is interpolated where all its
     neighbours belong to one surface; elsewhere the nearest one is taken, so that no depth arises between surfaces.
     """
-    spread = cv2.dilate(disparity, NEIGHBOURS) - cv2.erode(disparity, NEIGHBOURS)
-    broken = (np.asarray(spread) > ONE_SURFACE_PX * canvas.focal_px / canvas.pair.reference.camera.focal_px).astype(
-        np.uint8
-    )
+    broken = _broken(disparity, ONE_SURFACE_PX * canvas.focal_px / canvas.pair.reference.camera.focal_px)
     left, top, right, bottom = box
     u, v = np.arange(left, right, step_px, dtype=np.float64), np.arange(top, bottom, step_px, dtype=np.float64)
     found = np.empty((len(v), len(u)), dtype=np.float32)
     for first, last in strips(0, len(v)):
         found[first:last] = _strip(canvas, disparity, broken, u, v[first:last, None])
     return found
+
+
+def _broken(disparity: Cloud, step_px: float) -> Bytes:
+    """(h, w) 1 where a pixel and its neighbours span more than a step, or lie beyond the border."""
+    broken = np.empty(disparity.shape, dtype=np.uint8)
+    for top, bottom in strips(0, len(disparity)):
+        above = min(top, 1)
+        part = disparity[top - above : bottom + 1]
+        spread = np.asarray(cv2.subtract(cv2.dilate(part, NEIGHBOURS), cv2.erode(part, NEIGHBOURS)))
+        broken[top:bottom] = spread[above : above + bottom - top] > step_px
+    broken[[0, -1]], broken[:, [0, -1]] = 1, 1
+    return broken
 
 
 def _strip(canvas: Canvas, disparity: Cloud, broken: Bytes, u: Floats, v: Floats) -> Cloud:

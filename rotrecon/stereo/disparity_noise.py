@@ -33,7 +33,6 @@ def check_against_pictures(reference: Bytes, other: Bytes, disparity: Cloud) -> 
     """
     unseen, other_unseen = beyond(reference), beyond(other)
     columns = np.arange(disparity.shape[1], dtype=np.float32)[None, :]
-    squared = _squared_slopes(reference)
     differences: list[Cloud] = []
     held: list[Cloud] = []
     nearness: list[Cloud] = []
@@ -46,16 +45,17 @@ def check_against_pictures(reference: Bytes, other: Bytes, disparity: Cloud) -> 
         known = part[::EVERY] >= 0
         seen = np.asarray(cv2.remap(other, x[::EVERY], y[::EVERY], cv2.INTER_LINEAR), dtype=np.float32)
         differences.append((reference[top:bottom:EVERY] - seen)[known])
-        held.append(squared[top:bottom:EVERY][known])
+        held.append(_squared_slopes(reference, top, bottom)[::EVERY][known])
         nearness.append(part[::EVERY][known])
     return _sigma_px(np.concatenate(differences), np.concatenate(held), np.concatenate(nearness))
 
 
-def _squared_slopes(reference: Bytes) -> Cloud:
-    """(h, w) sum of the squared gradients along rows, over the support of a disparity."""
-    slope = cv2.Scharr(reference, cv2.CV_32F, 1, 0, scale=1 / 32)
+def _squared_slopes(reference: Bytes, top: int, bottom: int) -> Cloud:
+    """(bottom - top, w) sum of the squared gradients along rows, over the support of a disparity."""
+    above = min(top, SUPPORT_PX)
+    slope = cv2.Scharr(reference[top - above : bottom + SUPPORT_PX], cv2.CV_32F, 1, 0, scale=1 / 32)
     sums = cv2.boxFilter(cv2.multiply(slope, slope), -1, (SUPPORT_PX, SUPPORT_PX), normalize=False)
-    return np.asarray(sums, dtype=np.float32)
+    return np.asarray(sums, dtype=np.float32)[above : above + bottom - top]
 
 
 def _sigma_px(difference: Cloud, held: Cloud, disparity: Cloud) -> float | None:

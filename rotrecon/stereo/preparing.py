@@ -27,8 +27,6 @@ LEAST_PARALLAX_PX = 6.0
 """Disparity of the nearest surfaces below which their depth would err by 3 % and more."""
 GOOD_PARALLAX_PX = 60.0
 """Disparity that is worth moving the camera for: depth then errs by some 0.3 %."""
-LEAST_SCOUTED = 0.25
-"""Share of a picture that must be found without features: a twelfth of mere noise is."""
 MOST_PAIRS = 4
 """More pairs take time and share the reference's picture: a fifth one lessens the noise by less than a twentieth."""
 
@@ -95,8 +93,10 @@ def _prepare_pair(views: tuple[View, ...], number: int, reference: Features, lim
     scouted = scout(rectification, limits)
     inverse_depths = _where_to_look(checked.good.inverse_depths(rectification), scouted, limits)
     if inverse_depths is None:
-        share = 100 * float(np.isfinite(scouted).mean())
-        return f"too little contrast: {share:.0f} % of view 1 can be found in it; light the scene, or expose for longer"
+        return (
+            f"only {len(checked.good.disparity_px)} features of view 1 are found in it, too little contrast to know "
+            "where to look; light the scene, project a pattern on it, or state the arm's limits as [workspace] depth_m"
+        )
     parallax_px = _parallax_px(rectification, checked.good, scouted)
     if parallax_px < LEAST_PARALLAX_PX:
         needed_m = rectification.baseline_m * GOOD_PARALLAX_PX / max(parallax_px, 1.0)
@@ -122,11 +122,10 @@ def _where_to_look(features: Floats, scouted: Cloud, limits: Limits) -> tuple[fl
     high = None if limits.nearest_m is None else 1 / limits.nearest_m
     if low is not None and high is not None:
         return (low, high)
-    spans = [span(scouted, TAIL, max(FEWEST_SCOUTED, int(LEAST_SCOUTED * scouted.size)))]
-    spans.append(span(features.astype(np.float32), TAIL, FEWEST))
-    seen = [ends for ends in spans if ends is not None]
-    if not seen:
+    featured = span(features.astype(np.float32), TAIL, FEWEST)
+    if featured is None:
         return None
+    seen = [ends for ends in (featured, span(scouted, TAIL, FEWEST_SCOUTED)) if ends is not None]
     if low is None:
         low = max(min(end for end, _ in seen) * (1 - FEATURE_MARGIN), 0.0)
     if high is None:
