@@ -44,10 +44,18 @@ def check_against_pictures(reference: Bytes, other: Bytes, disparity: Cloud) -> 
         part[(np.asarray(lost) > 0) | (unseen[top:bottom] > 0)] = -1.0
         known = part[::EVERY] >= 0
         seen = np.asarray(cv2.remap(other, x[::EVERY], y[::EVERY], cv2.INTER_LINEAR), dtype=np.float32)
-        differences.append((reference[top:bottom:EVERY] - seen)[known])
+        differences.append(_local(np.where(known, reference[top:bottom:EVERY] - seen, np.float32(np.nan)))[known])
         held.append(_squared_slopes(reference, top, bottom)[::EVERY][known])
         nearness.append(part[::EVERY][known])
     return _sigma_px(np.concatenate(differences), np.concatenate(held), np.concatenate(nearness))
+
+
+def _local(difference: Cloud) -> Cloud:
+    """Differences (r, w) of pictures less those a support to the left, scaled to the same deviation: light that changes
+    from view to view, as on glossy surfaces, is smooth and not noise. NaN where either is unknown."""
+    local = np.full_like(difference, np.nan)
+    local[:, SUPPORT_PX:] = (difference[:, SUPPORT_PX:] - difference[:, :-SUPPORT_PX]) / np.float32(np.sqrt(2))
+    return local
 
 
 def _squared_slopes(reference: Bytes, top: int, bottom: int) -> Cloud:
@@ -68,6 +76,9 @@ def _sigma_px(difference: Cloud, held: Cloud, disparity: Cloud) -> float | None:
         return None
     near = disparity >= np.quantile(disparity, [TAIL, 1 - TAIL]).mean()
     difference, held = difference[near], held[near]
-    spread = NORMAL_MAD * float(np.median(np.abs(difference - np.median(difference))))
+    known = difference[np.isfinite(difference)]
+    if len(known) < FEWEST:
+        return None
+    spread = NORMAL_MAD * float(np.median(np.abs(known)))
     bound = spread**2 / np.maximum(held, np.finfo(np.float32).tiny)
     return float(np.sqrt(FLOOR_PX**2 + np.minimum(OVER_BOUND**2 * bound, WORST_PX**2).mean()))
