@@ -32,8 +32,6 @@ USUAL_SIGMA_PX = 0.15
 """Of disparity, measured on rendered pairs with fine texture."""
 LEAST_VALID = 0.15
 """Share of an area or a frame with depth, below which nothing in it is measured: a twelfth of mere noise has depth."""
-BLIND_SIGMA_PX = 0.85
-"""Of disparity, px of the pictures as matched: mere noise has 1, weak texture a half."""
 MOVED = 5
 """Features in an area that have left their rows together: fewer may be chance."""
 MOST_MOVED = 0.3
@@ -73,13 +71,10 @@ def area_frame(prepared: Prepared, area: AreaOfInterest) -> Frame | FrameUnavail
 
 def _too_empty(frame: Frame, what: str) -> FrameUnavailable | None:
     assert frame.stereo is not None
-    assert isinstance(frame.noise, StereoNoise)
-    blind = frame.noise.disparity_sigma_px * frame.stereo.scale > BLIND_SIGMA_PX
-    if frame.stereo.valid_share >= LEAST_VALID and not blind:
+    if frame.stereo.valid_share >= LEAST_VALID:
         return None
-    found = "noise may be matched with noise" if blind else "there is no texture that could be matched"
     return FrameUnavailable(
-        f"{100 * frame.stereo.valid_share:.0f} % of the {what} have depth, but {found}; take in more of the object's "
+        f"{100 * frame.stereo.valid_share:.0f} % of the {what} have depth: there is no texture; take in more of the object's "
         "surroundings, light the object from the side, or project a pattern on it"
     )
 
@@ -153,7 +148,7 @@ def _evidence(prepared: Prepared, canvas: Canvas, window_px: int, scale: float, 
 
 
 def _share(valid: Bools, inside: Bools) -> float:
-    return np.count_nonzero(valid & inside) / np.count_nonzero(inside)
+    return float(np.count_nonzero(valid & inside) / np.count_nonzero(inside))
 
 
 def window_for(area: AreaOfInterest) -> int:

@@ -8,7 +8,7 @@ from rotrecon.arrays import Cloud, Floats, freeze
 from rotrecon.frame import FrameUnavailable, View
 from rotrecon.stereo.epipolar import FEWEST, check_epipolar
 from rotrecon.stereo.exposure import exposure_problem
-from rotrecon.stereo.features import Features, Matches, features_of
+from rotrecon.stereo.features import Features, features_of
 from rotrecon.stereo.geometry import pair_of
 from rotrecon.stereo.limits import NEAREST_M, Limits, depth_limits
 from rotrecon.stereo.rectification import Rectification
@@ -90,14 +90,14 @@ def _prepare_pair(views: tuple[View, ...], number: int, reference: Features, lim
     checked = check_epipolar(rectification, reference, features_of(views[number]))
     if isinstance(checked, str):
         return checked
+    if len(checked.good.disparity_px) < FEWEST:
+        return (
+            f"only {len(checked.good.disparity_px)} features of view 1 are found in it: too little contrast to check "
+            "the poses, and noise may be matched with noise; light the scene, or project a pattern on it"
+        )
     scouted = scout(rectification, limits)
     inverse_depths = _where_to_look(checked.good.inverse_depths(rectification), scouted, limits)
-    if inverse_depths is None:
-        return (
-            f"only {len(checked.good.disparity_px)} features of view 1 are found in it, too little contrast to know "
-            "where to look; light the scene, project a pattern on it, or state the arm's limits as [workspace] depth_m"
-        )
-    parallax_px = _parallax_px(rectification, checked.good, scouted)
+    parallax_px = float(np.quantile(checked.good.disparity_px, NEAR))
     if parallax_px < LEAST_PARALLAX_PX:
         needed_m = rectification.baseline_m * GOOD_PARALLAX_PX / max(parallax_px, 1.0)
         return (
@@ -108,24 +108,14 @@ def _prepare_pair(views: tuple[View, ...], number: int, reference: Features, lim
     return Pair(number, rectification, scouted, inverse_depths, good_px, checked.moved, checked.error_px, parallax_px)
 
 
-def _parallax_px(pair: Rectification, good: Matches, scouted: Cloud) -> float:
-    """Disparity of near surfaces, of features where there are enough."""
-    if len(good.disparity_px) >= FEWEST:
-        return float(np.quantile(good.disparity_px, NEAR))
-    ends = span(scouted, 1 - NEAR, 1)
-    return 0.0 if ends is None else ends[1] * pair.reference.camera.focal_px * pair.baseline_m
-
-
-def _where_to_look(features: Floats, scouted: Cloud, limits: Limits) -> tuple[float, float] | None:
+def _where_to_look(features: Floats, scouted: Cloud, limits: Limits) -> tuple[float, float]:
     """Inverse depths (1/m) between which surfaces lie: as the limits say, else as features and scouted pixels show."""
     low = None if limits.farthest_m is None else 1 / limits.farthest_m
     high = None if limits.nearest_m is None else 1 / limits.nearest_m
     if low is not None and high is not None:
         return (low, high)
-    featured = span(features.astype(np.float32), TAIL, FEWEST)
-    if featured is None:
-        return None
-    seen = [ends for ends in (featured, span(scouted, TAIL, FEWEST_SCOUTED)) if ends is not None]
+    spans = (span(features.astype(np.float32), TAIL, FEWEST), span(scouted, TAIL, FEWEST_SCOUTED))
+    seen = [ends for ends in spans if ends is not None]
     if low is None:
         low = max(min(end for end, _ in seen) * (1 - FEATURE_MARGIN), 0.0)
     if high is None:
