@@ -74,8 +74,8 @@ def _too_empty(frame: Frame, what: str) -> FrameUnavailable | None:
     if frame.stereo.valid_share >= LEAST_VALID:
         return None
     return FrameUnavailable(
-        f"{100 * frame.stereo.valid_share:.0f} % of the {what} have depth: there is no texture; take in more of the object's "
-        "surroundings, light the object from the side, or project a pattern on it"
+        f"{100 * frame.stereo.valid_share:.0f} % of the {what} have depth: there is no texture; take in more of the "
+        "object's surroundings, light the object from the side, or project a pattern on it"
     )
 
 
