@@ -8,7 +8,7 @@ from typing import Annotated, Literal
 
 import typer
 
-from app.describe import describe, describe_result
+from app.describe import describe, describe_result, matching_notes
 from app.drawing_text import parse_area, parse_axis, stroke_text
 from app.flaw_text import FLAW_HELP, parse_flaws
 from app.host import HostError
@@ -16,9 +16,10 @@ from app.log_cli import add_to
 from app.record.errors import StoreError
 from app.writing import write_file
 from rotrecon.answer import answer, cannot
+from rotrecon.capture import Capture
 from rotrecon.drawing import Constraints, Direction, Drawing, DrawingError
 from rotrecon.errors import SceneError
-from rotrecon.frame import Capture, Frame, FrameUnavailable
+from rotrecon.frame import Frame, FrameUnavailable
 from rotrecon.outcome import FitFailure
 from rotrecon.overlay import outlines, with_outlines, with_segmentation
 from rotrecon.reconstruct import reconstruct
@@ -91,7 +92,7 @@ def fit(
     settings = Settings(method=method, layers=layers, tools=default_tools() if tools is None else read_tools(tools))
     if overlay is not None and overlay.suffix.lower() != ".png":
         raise typer.BadParameter(f"--overlay {overlay} is not a PNG; name a file that ends in .png")
-    frame = read_scene(scene).frame()
+    frame = read_scene(scene).frame(drawing.area, settings)
     if isinstance(frame, FrameUnavailable):
         content = cannot(frame.reason, method)
         typer.echo(_json(content) if json_ else describe(content))
@@ -146,7 +147,7 @@ def serve(
     settings = Settings(method=method, layers=layers, tools=default_tools() if tools is None else read_tools(tools))
     from app.serving import serve as serve_console  # viser takes a second to import, which no other command needs
 
-    serve_console(frame, capture.name, settings, host, port, notes=capture.notes)
+    serve_console(frame, capture.name, settings, host, port, notes=(*capture.notes, *matching_notes(frame)))
 
 
 def _demo() -> Capture:
@@ -254,8 +255,10 @@ def bench(
     if paper_method is None:
         from app.bench.console_speed import console_report  # no other command needs the benchmarks
         from app.bench.speed import speed_report
+        from app.bench.stereo_speed import stereo_report
 
         typer.echo(speed_report())
+        typer.echo(f"\n{stereo_report()}")
         typer.echo(f"\n{console_report()}")
         return
     from app.bench.paper_method import paper_method_document

@@ -4,6 +4,7 @@ from typing import Any
 
 from app.wording import candidate_row, certainty, from_to, measured, open_ends, rests_on
 from rotrecon.answer import answer as answer_of
+from rotrecon.frame import Frame
 from rotrecon.outcome import Fit
 from rotrecon.primitives import in_words
 from rotrecon.reconstruction import Reconstruction
@@ -35,6 +36,17 @@ def describe(answer: dict[str, Any]) -> str:
         *(f"    {reason}" for reason in answer["reasons"]),
     ]
     return "\n".join(lines)
+
+
+def matching_notes(frame: Frame) -> tuple[str, ...]:
+    """What an operator should know of a frame that was matched from views."""
+    stereo = frame.stereo
+    if stereo is None:
+        return ()
+    error = stereo.epipolar_error_px
+    check = "too few features to check the poses" if error is None else f"features lie {error:.2f} px off their rows"
+    share = f"{100 * stereo.valid_share:.0f} % of its pixels have depth"
+    return (f"Matched from {len(stereo.pairs) + 1} views, coarsely: {share}, {check}.", *stereo.left_out)
 
 
 def _diameter(answer: dict[str, Any]) -> str:

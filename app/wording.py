@@ -82,12 +82,26 @@ def rests_on(answer: dict[str, Any]) -> list[tuple[str, str]]:
         ("axis known within", None if turn is None else f"{turn:.{decimals_for((-turn, turn), 1)}f} degrees"),
         ("pixels that agree", None if share is None else f"{100 * share:.0f} %"),
         ("standard error of the radius", None if sigma is None else f"{100 * sigma:.2f} %"),
-        *_noise(answer["noise"] or {}),
+        *_noise(answer["noise"] or {}, matched=answer["stereo"] is not None),
+        *matching(answer["stereo"]),
     ]
     return [(name, text) for name, text in rows if text is not None]
 
 
-def _noise(noise: dict[str, Any]) -> list[tuple[str, str | None]]:
+def matching(stereo: dict[str, Any] | None) -> list[tuple[str, str | None]]:
+    """What depth that was matched from views rests on; nothing for depth that was recorded."""
+    if stereo is None:
+        return []
+    error = stereo["epipolar_error_px"]
+    return [
+        ("depth matched from views", " and ".join(map(str, stereo["views"]))),
+        ("area with depth", f"{100 * stereo['valid_share']:.0f} %"),
+        ("features off their rows by", "too few to say" if error is None else f"{error:.2f} px"),
+        ("views left out", "; ".join(stereo["left_out"]) or None),
+    ]
+
+
+def _noise(noise: dict[str, Any], *, matched: bool) -> list[tuple[str, str | None]]:
     """What the depth errs by, and who says so."""
     if not noise:
         return []
@@ -95,5 +109,11 @@ def _noise(noise: dict[str, Any]) -> list[tuple[str, str | None]]:
     return [
         ("depth errs by", f"{noise['sigma_mm']:.2f} mm" + ("" if disparity is None else f", {disparity:.2f} px")),
         ("correlated over", f"{noise['correlation_px']:.1f} px"),
-        ("this noise is", "stated by the scene" if noise["stated"] else "estimated from the frame"),
+        ("this noise is", _says_so(noise["stated"], matched)),
     ]
+
+
+def _says_so(stated: bool, matched: bool) -> str:
+    if matched:
+        return "told from the pictures"
+    return "stated by the scene" if stated else "estimated from the frame"

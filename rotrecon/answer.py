@@ -6,6 +6,7 @@ import numpy as np
 
 from rotrecon.arrays import Floats
 from rotrecon.circles import SectionState
+from rotrecon.frame import StereoEvidence
 from rotrecon.outcome import Evidence, Fit, FitFailure, Intervals, PartOf
 from rotrecon.primitives import Primitive, Sphere
 from rotrecon.reconstruction import Reconstruction
@@ -15,7 +16,7 @@ NOTHING: dict[str, Any] = dict.fromkeys(
     [
         "margin", "diameter_mm", "interval_mm", "length_mm", "length_interval_mm", "ends", "center_m",
         "center_interval_mm", "axis", "axis_interval_deg", "half_angle_deg", "half_angle_interval_deg", "rms_mm",
-        "arc_deg", "parts", "inlier_share", "sigma_over_radius", "noise", "tool", "contact",
+        "arc_deg", "parts", "inlier_share", "sigma_over_radius", "noise", "stereo", "tool", "contact",
     ]
 )  # fmt: skip
 """The fields that are null where they are not known."""
@@ -39,6 +40,7 @@ def answer(result: Reconstruction) -> dict[str, Any]:
         "half_angle_deg": _degrees(solid.half_angle_rad) if solid.kind == "cone" else None,
         **_intervals(fit.intervals),
         **_evidence(fit.evidence),
+        "stereo": _stereo(result.frame.stereo),
         "profile": _profile(result, fit),
         "rms_mm": _mm(fit.rms_m),
         "arc_deg": round(float(np.degrees(fit.arc_rad)), 1),
@@ -99,6 +101,20 @@ def _evidence(evidence: Evidence | None) -> dict[str, Any]:
             "correlation_px": round(evidence.correlation_px, 2),
             "stated": evidence.noise_stated,
         },
+    }
+
+
+def _stereo(evidence: StereoEvidence | None) -> dict[str, Any] | None:
+    """What the depth was matched from; views counted from 1, the first being the reference."""
+    if evidence is None:
+        return None
+    error_px = evidence.epipolar_error_px
+    return {
+        "views": [1, *(number + 1 for number in evidence.pairs)],
+        "left_out": list(evidence.left_out),
+        "epipolar_error_px": None if error_px is None else round(error_px, 3),
+        "valid_share": round(evidence.valid_share, 4),
+        "window_px": evidence.window_px,
     }
 
 

@@ -43,7 +43,11 @@ class PinholeCamera:
         depth = np.where(np.isfinite(depth) & (depth > 0), depth, np.float32(np.nan))
         u = ((np.arange(self.width) - self._principal[0]) / self._focal[0]).astype(np.float32)
         v = ((np.arange(self.height) - self._principal[1]) / self._focal[1]).astype(np.float32)
-        return np.stack([u[None, :] * depth, v[:, None] * depth, depth], axis=-1)
+        points = np.empty((*depth.shape, 3), dtype=np.float32)
+        np.multiply(u, depth, out=points[..., 0])
+        np.multiply(v[:, None], depth, out=points[..., 1])
+        points[..., 2] = depth
+        return points
 
     @property
     def _focal(self) -> Floats:

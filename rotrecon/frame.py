@@ -1,4 +1,4 @@
-"""What was recorded: one frame whose depth is known, or several views that still have to be matched."""
+"""What is measured in: a picture with depth behind it, the views it was matched from, and what its depths err by."""
 
 from dataclasses import dataclass, field
 from datetime import datetime
@@ -30,6 +30,43 @@ DepthNoise = StereoNoise | DepthCameraNoise
 
 
 @dataclass(frozen=True, eq=False)
+class View:
+    """One undistorted picture from a known pose."""
+
+    image: Bytes
+    """(height, width, 3) RGB."""
+    camera: PinholeCamera
+    T_base_camera: Floats
+    """(4, 4) rigid."""
+
+    def __post_init__(self) -> None:
+        freeze(self)
+
+
+@dataclass(frozen=True)
+class StereoEvidence:
+    """What is known of a frame that was matched from views, besides its depth."""
+
+    pairs: tuple[int, ...]
+    """Numbers of the views that the first one, number 0, was matched with."""
+    left_out: tuple[str, ...]
+    """Views that are not used, each with the reason."""
+    epipolar_error_px: float | None
+    """How far matched features lie off the row that the poses and cameras put them in: median of the worst pair; None
+    where there are too few to say."""
+    features: int
+    """Matched features that say so, of all pairs."""
+    valid_share: float
+    """Share of the pixels with depth: in the area, or in the frame where the whole of it was matched."""
+    disparities_px: tuple[float, float]
+    """Smallest and largest that were looked for, of the first pair."""
+    window_px: int
+    """Side of the blocks that were compared."""
+    scale: float
+    """1 where pictures were matched at full resolution."""
+
+
+@dataclass(frozen=True, eq=False)
 class Frame:
     """A picture with an organised cloud behind it; every pixel coordinate in the program is one of this picture."""
 
@@ -44,6 +81,9 @@ class Frame:
     """None where the scene does not state it."""
     workspace: Workspace = Workspace()
     captured_at: datetime | None = None
+    views: tuple[View, ...] = ()
+    """Undistorted pictures that the depth was matched from, the reference first; empty where it was recorded."""
+    stereo: StereoEvidence | None = None
 
     def __post_init__(self) -> None:
         freeze(self)
@@ -54,42 +94,8 @@ class Frame:
         return self.points_m[..., 2]
 
 
-@dataclass(frozen=True, eq=False)
-class View:
-    """One undistorted picture from a known pose, not yet matched with another."""
-
-    image: Bytes
-    """(height, width, 3) RGB."""
-    camera: PinholeCamera
-    T_base_camera: Floats
-    """(4, 4) rigid."""
-
-    def __post_init__(self) -> None:
-        freeze(self)
-
-
 @dataclass(frozen=True)
 class FrameUnavailable:
     """Why a capture cannot be turned into a frame, and what would help."""
 
     reason: str
-
-
-@dataclass(frozen=True, eq=False)
-class Capture:
-    """A recording as it was read: either `recorded` is a frame, or `views` are two or more."""
-
-    name: str
-    recorded: Frame | None = None
-    views: tuple[View, ...] = ()
-    notes: tuple[str, ...] = ()
-    """What a reader should know of how it was made, such as intrinsics that had to be recovered."""
-
-    def frame(self) -> Frame | FrameUnavailable:
-        """The frame to measure in: the recorded one; views need stereo matching, which this version has not."""
-        if self.recorded is not None:
-            return self.recorded
-        return FrameUnavailable(
-            f"{self.name} holds {len(self.views)} views and needs stereo matching, which this version cannot do; "
-            "open a scene whose depth is recorded"
-        )

@@ -7,6 +7,7 @@ from threadpoolctl import ThreadpoolController  # pyright: ignore[reportMissingT
 
 from rotrecon.arrays import Bools, Cloud, blocks
 from rotrecon.by_rays import by_rays
+from rotrecon.calibration import with_calibration_error
 from rotrecon.circles import base_points
 from rotrecon.drawing import CrossSegments, Drawing, DrawingError, cut_sections
 from rotrecon.frame import Frame
@@ -44,7 +45,7 @@ def reconstruct(frame: Frame, drawing: Drawing, settings: Settings) -> Reconstru
         return by_sections(segmented)
     # matrices of a few columns are multiplied sooner by one thread than shared out between several
     with THREADS.limit(limits=1, user_api="blas"):  # pyright: ignore[reportUnknownMemberType]
-        return by_rays(segmented, depth_m)
+        return with_calibration_error(by_rays(segmented, depth_m))
 
 
 def _with_axis(frame: Frame, drawing: Drawing, settings: Settings) -> Drawing:

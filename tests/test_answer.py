@@ -22,7 +22,7 @@ OF_SOME_THINGS = ["length_interval_mm", "half_angle_interval_deg"]
 FIELDS = [
     "kind", "certain", "margin", "concave", "diameter_mm", "interval_mm", "length_mm", "length_interval_mm", "ends",
     "center_m", "center_interval_mm", "axis", "axis_interval_deg", "half_angle_deg", "half_angle_interval_deg",
-    "profile", "rms_mm", "arc_deg", "parts", "inlier_share", "sigma_over_radius", "noise", "sections", "tool",
+    "profile", "rms_mm", "arc_deg", "parts", "inlier_share", "sigma_over_radius", "noise", "stereo", "sections", "tool",
     "contact", "reasons", "candidates", "frame", "method",
 ]  # fmt: skip
 

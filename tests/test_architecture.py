@@ -10,6 +10,11 @@ FORBIDDEN = {"app", "viser", "fastapi", "starlette", "uvicorn", "typer"}
 GIVEN = """
     errors files arrays camera primitives workspace tool_table settings frame drawing outcome noise
 """.split()
+MATCHED = """
+    stereo.rectification stereo.canvas stereo.disparity_noise stereo.matching stereo.carrying stereo.limits
+    stereo.scouting stereo.features stereo.epipolar stereo.exposure stereo.geometry stereo.preparing stereo.fusion
+    stereo.frames capture
+""".split()
 PROPOSED_AXIS = """
     stroke.planes stroke.foreground stroke.stroke_ends stroke.mirror stroke.hollow stroke.axis_proposal
     stroke.axis_direction
@@ -29,13 +34,13 @@ TURNED = """
     turned.smoothness turned.turned_start turned.turned_fit
 """.split()
 JUDGED = """
-    two_objects intervals recognition soundness judgement section_radii by_rays
+    two_objects intervals recognition soundness judgement section_radii by_rays calibration
 """.split()
 BY_RAYS = [*FITTED, *TURNED, *JUDGED]
 SHOWN = """
     answer curves overlay mesh
 """.split()
-ORDER = [*GIVEN, *PROPOSED_AXIS, *SEGMENTED, *BY_SECTIONS, *BY_RAYS, "reconstruct", *SHOWN]
+ORDER = [*GIVEN, *MATCHED, *PROPOSED_AXIS, *SEGMENTED, *BY_SECTIONS, *BY_RAYS, "reconstruct", *SHOWN]
 """The flow of data; a stage may import only what stands before it."""
 STAGES = set(
     """

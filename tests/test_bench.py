@@ -11,6 +11,7 @@ from app.bench.measuring import SETTINGS, by_program
 from app.bench.paper_method import paper_method_document
 from app.bench.poses import STEREO, poses
 from app.bench.speed import speed_report
+from app.bench.stereo_speed import stereo_report
 from app.bench.variations import VARIATIONS
 
 
@@ -73,3 +74,11 @@ def test_every_release_on_a_page_gets_its_latency():
     durations_s = release_latency(1).durations_s
     assert durations_s.shape == (1,)
     assert (durations_s > 0).all()
+
+
+def test_matching_is_measured_beside_the_bare_call():
+    text = stereo_report(runs=1)
+    assert len(rows_of(text, "bare matcher call")) == 1
+    whole = rows_of(text, "the whole frame at full resolution")[0]
+    assert "ms: " in whole[2]
+    assert "MB: " in whole[4]

@@ -17,6 +17,7 @@ from rotrecon.simulation.simulate import simulate
 from rotrecon.simulation.truth import write_simulated
 from tests.exact import CAMERA
 from tests.recordings import recording
+from tests.scenes import save, with_views
 
 GREY = np.full((240, 320, 3), 128, np.uint8)
 
@@ -98,12 +99,23 @@ def test_honest_cannot_is_json_with_exit_code_3(rotrecon, tmp_path):
     assert out.startswith("No result:")
 
 
-def test_views_are_an_honest_cannot(rotrecon):
-    code, out, _ = rotrecon(
-        "fit", recording("virtual_stereo"), "--area", "5,5 60,60", "--axis", "30,10 30,55", "--json"
-    )
+def test_views_are_matched_in_the_area_and_measured(rotrecon):
+    drawing = ["--area", "400,590 680,870", "--axis", "541,620 541,840"]
+    code, out, _ = rotrecon("fit", recording("virtual_stereo"), *drawing, "--json")
+    answer = json.loads(out)
+    assert code == 0
+    assert answer["kind"] == "sphere"
+    assert answer["diameter_mm"] == pytest.approx(100, rel=0.005)
+    assert answer["stereo"]["views"] == [1, 2]
+    assert answer["stereo"]["epipolar_error_px"] < 0.2
+    assert answer["stereo"]["valid_share"] > 0.9
+
+
+def test_views_that_cannot_be_matched_are_an_honest_cannot(rotrecon, tmp_path):
+    scene = with_views({}, {})
+    code, out, _ = rotrecon("fit", save(tmp_path, scene), "--area", "1,1 6,4", "--json")
     assert code == 3
-    assert "stereo matching" in json.loads(out)["reasons"][0]
+    assert "move the camera sideways" in json.loads(out)["reasons"][0]
 
 
 @pytest.mark.parametrize("name", ["tin", "blue_mug", "green_bowl", "pr2_mug", "concrete_pipe"])
@@ -217,10 +229,20 @@ def test_import_of_a_picture_with_depth(rotrecon, tmp_path):
         assert not (tmp_path / "other").exists()
 
 
-def test_serve_refuses_views_with_their_reason(rotrecon):
-    code, _, err = rotrecon("serve", recording("virtual_stereo"))
+def test_serve_opens_views_with_coarse_depth(rotrecon, monkeypatch):
+    served: list[tuple[Frame, tuple[str, ...]]] = []
+    monkeypatch.setattr("app.serving.serve", lambda frame, *_, notes, **__: served.append((frame, notes)))
+    assert rotrecon("serve", recording("virtual_stereo"))[0] == 0
+    frame, notes = served[0]
+    assert frame.stereo.scale == 0.5
+    assert np.isfinite(frame.depth_m).mean() > 0.8
+    assert any("Matched from 2 views" in note for note in notes)
+
+
+def test_serve_refuses_views_that_cannot_be_matched_with_their_reason(rotrecon, tmp_path):
+    code, _, err = rotrecon("serve", save(tmp_path, with_views({}, {})))
     assert code == 3
-    assert "needs stereo matching" in err
+    assert "move the camera sideways" in err
 
 
 def test_a_method_is_one_of_those_there_are(rotrecon, scene):

@@ -10,8 +10,8 @@ from hypothesis import strategies as st
 from rosbags.rosbag2 import StoragePlugin
 
 from rotrecon.camera import PinholeCamera
+from rotrecon.capture import Capture
 from rotrecon.errors import SceneError
-from rotrecon.frame import Capture
 from rotrecon.scene.formats.image import encode_png
 from rotrecon.scene.formats.npz import encode_npz
 from rotrecon.scene.importing import ImportOptions, import_scene

@@ -7,10 +7,12 @@ import pytest
 
 from app.bench.accuracy.recorded import PR2_MUG, PR2_MUG_BODY, PR2_MUG_MARGIN, RECORDINGS, read_recording, said_of
 from app.drawing_text import parse_area, parse_axis
-from rotrecon.drawing import Drawing
-from rotrecon.frame import Frame, FrameUnavailable
+from rotrecon.answer import answer
+from rotrecon.drawing import AreaOfInterest, Drawing, ObjectAxis
+from rotrecon.frame import Frame
+from rotrecon.reconstruct import reconstruct
 from rotrecon.scene.reading import read_scene
-from rotrecon.settings import Method
+from rotrecon.settings import Method, Settings
 from tests.recordings import DATA, recording
 
 BY_NAME = {one.name: one for one in RECORDINGS}
@@ -96,7 +98,17 @@ def test_inside_of_a_pipe_is_measured_along_the_rays_alone_and_never_gets_a_tool
     assert said("concrete_pipe")["tool"] is said("concrete_pipe", "paper")["tool"] is None
 
 
-def test_views_answer_that_they_need_matching():
-    frame = read_scene(recording("virtual_stereo")).frame()
-    assert isinstance(frame, FrameUnavailable)
-    assert "needs stereo matching" in frame.reason
+@pytest.mark.parametrize(
+    ("kind", "corners", "ends", "diameter_mm"),
+    [
+        ("sphere", ((400, 590), (680, 870)), ((541, 620), (541, 840)), 100),
+        ("cylinder", ((200, 30), (1050, 540)), ((220, 270), (1030, 270)), 200),
+    ],
+)
+def test_rendered_views_are_matched_to_half_a_percent(kind, corners, ends, diameter_mm):
+    area = AreaOfInterest.rectangle(*corners)
+    frame = read_scene(recording("virtual_stereo")).frame(area)
+    assert isinstance(frame, Frame)
+    content = answer(reconstruct(frame, Drawing(area, ObjectAxis(*ends)), Settings()))
+    assert content["kind"] == kind
+    assert content["diameter_mm"] == pytest.approx(diameter_mm, rel=0.005)

@@ -145,10 +145,11 @@ def test_the_picture_of_a_cloud_is_its_colours(tmp_path):
     assert np.array_equal(read_scene(save(tmp_path, scene, **{"cloud.npz": content})).recorded.image, colors)
 
 
-def test_views_are_read_and_ask_for_stereo_matching(tmp_path):
+def test_views_are_read_with_the_limits_of_the_arm(tmp_path):
     capture = read_scene(save(tmp_path, with_views({}, {"T_base_camera": np.eye(4).tolist()})))
     assert len(capture.views) == 2
     assert np.array_equal(capture.views[0].T_base_camera, TURNED)
+    assert capture.workspace.reach_m == (0.1, 1.5)
     assert isinstance(capture.frame(), FrameUnavailable)
 
 
@@ -162,10 +163,12 @@ def test_a_recorded_frame_opens(name):
     assert 0.05 < np.nanmedian(frame.depth_m) < 3
 
 
-def test_the_recorded_views_open_and_ask_for_stereo_matching():
+def test_the_recorded_views_open_and_are_matched():
     capture = read_scene(recording("virtual_stereo"))
     assert len(capture.views) == 2
     assert capture.views[0].image.shape == (1024, 1280, 3)
-    answer = capture.frame()
-    assert isinstance(answer, FrameUnavailable)
-    assert "stereo matching" in answer.reason
+    frame = capture.frame()
+    assert isinstance(frame, Frame)
+    assert frame.image is capture.views[0].image
+    assert frame.views == capture.views
+    assert 1.0 < np.nanmedian(frame.depth_m) < 1.5

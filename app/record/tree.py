@@ -14,7 +14,7 @@ from numpy.typing import NDArray
 
 from rotrecon.camera import PinholeCamera
 from rotrecon.drawing import AreaOfInterest, Constraints, Drawing, ObjectAxis
-from rotrecon.frame import DepthCameraNoise, Frame, StereoNoise, View
+from rotrecon.frame import DepthCameraNoise, Frame, StereoEvidence, StereoNoise, View
 from rotrecon.settings import Settings
 from rotrecon.tool_table import Tool
 from rotrecon.workspace import Workspace
@@ -34,6 +34,7 @@ KNOWN = {
         ObjectAxis,
         PinholeCamera,
         Settings,
+        StereoEvidence,
         StereoNoise,
         Tool,
         View,

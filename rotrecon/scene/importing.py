@@ -8,7 +8,8 @@ import numpy as np
 
 from rotrecon.arrays import Bytes, Cloud, Floats
 from rotrecon.camera import PinholeCamera
-from rotrecon.frame import Capture, Frame
+from rotrecon.capture import Capture
+from rotrecon.frame import Frame
 from rotrecon.scene.formats.cloud import RawCloud
 from rotrecon.scene.formats.cloud_file import CLOUD_ENDINGS, read_cloud
 from rotrecon.scene.formats.depth import read_depth

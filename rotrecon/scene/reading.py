@@ -6,8 +6,9 @@ import numpy as np
 
 from rotrecon.arrays import Bytes, Cloud, Floats
 from rotrecon.camera import PinholeCamera
+from rotrecon.capture import Capture
 from rotrecon.errors import SceneError
-from rotrecon.frame import Capture, DepthCameraNoise, DepthNoise, Frame, StereoNoise, View
+from rotrecon.frame import DepthCameraNoise, DepthNoise, Frame, StereoNoise, View
 from rotrecon.scene.formats.cloud_file import read_cloud
 from rotrecon.scene.formats.depth import read_depth
 from rotrecon.scene.formats.image import read_image
@@ -49,7 +50,7 @@ def read_scene(folder: Path) -> Capture:
     notes = () if scene.source is None else (f"Source: {scene.source}",)
     if scene.frame is None:
         views = tuple(_read_view(folder, f"views[{index}]", view, scene) for index, view in enumerate(scene.views))
-        return Capture(scene.name, views=views, notes=notes)
+        return Capture(scene.name, views=views, notes=notes, workspace=_workspace(scene.workspace))
     frame, more_notes = _read_frame(folder, scene.frame, scene)
     return Capture(scene.name, recorded=frame, notes=notes + more_notes)
 

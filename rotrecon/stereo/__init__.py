@@ -1,0 +1,1 @@
+"""From two or more views of known pose to one frame with depth."""
