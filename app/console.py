@@ -3,7 +3,7 @@
 import asyncio
 import io
 import logging
-from collections.abc import Iterator
+from collections.abc import Callable, Iterator
 from contextlib import contextmanager, redirect_stdout
 from dataclasses import dataclass
 
@@ -74,11 +74,14 @@ class Console:
         *,
         notes: tuple[str, ...] = (),
         cloud_points: int = CLOUD_POINTS,
+        open_viser: Callable[[], ViserServer] | None = None,
     ) -> None:
+        """`open_viser` starts the server that its pages are on; without, one listens on `host` and `port` itself."""
         self.session = Session((frame.camera.width, frame.camera.height))
         self.frame, self._name, self._settings, self._notes = frame, name, settings, notes
         self._host, self._port, self._cloud_points = host, port, cloud_points
         self.pages: dict[int, PageView] = {}
+        self._open_viser = open_viser or self._open_server
         self._opened: dict[int, ClientHandle] = {}
         self._measuring: dict[int, asyncio.Task[None]] = {}
 
@@ -90,8 +93,7 @@ class Console:
 
     def start(self) -> None:
         """Open the server and show the frame; returns when pages can be opened."""
-        with redirect_stdout(io.StringIO()):
-            self.server = ViserServer(self._host, self._port, verbose=False)
+        self.server = self._open_viser()
         self.server.request_share_url = _refuse_to_share
         self._loop = self.server.get_event_loop()
         self._queue: asyncio.Queue[Item] = asyncio.Queue()
@@ -108,6 +110,10 @@ class Console:
         self._running = asyncio.run_coroutine_threadsafe(self._run(), self._loop)
         self.server.on_client_connect(self._page_opened)
         self.server.on_client_disconnect(self._page_closed)
+
+    def _open_server(self) -> ViserServer:
+        with redirect_stdout(io.StringIO()):
+            return ViserServer(self._host, self._port, verbose=False)
 
     def stop(self) -> None:
         """Close the server and every page, when what is being shown is shown; measurements are given up."""
