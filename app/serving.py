@@ -33,7 +33,7 @@ def serve(
     hidden = HiddenViser()
     console = Console(frame, name, settings, notes=notes, open_viser=hidden.open)
     console.start()
-    door = Door(hidden, people, socket, host, certificate)
+    door = Door(hidden, people, socket, host, certificate, camera_commands=console.panels.camera_commands)
     try:
         door.start()
         for line in (*notes, *announcements(door)):

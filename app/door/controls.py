@@ -1,9 +1,10 @@
 """Whether a page may do what it asks of a control: set its value, within its range, while it is enabled."""
 
-from collections.abc import Sequence
+from collections.abc import Collection, Sequence
 from typing import Any, TypeGuard
 
 from viser import (
+    CommandHandle,
     GuiButtonGroupHandle,
     GuiButtonHandle,
     GuiCheckboxHandle,
@@ -29,8 +30,14 @@ BRIGHTEST = 255
 class Controls:
     """What viser knows of the controls that a page can see: everybody's and its own."""
 
-    def __init__(self, server: ViserServer) -> None:
+    def __init__(self, server: ViserServer, camera_commands: Collection[CommandHandle] = ()) -> None:
+        """`camera_commands` move the camera of the page they come from and do nothing else."""
         self._server = server
+        self._camera_commands = {command._impl.uuid for command in camera_commands}
+
+    def moves_camera(self, uuid: str) -> bool:
+        """Whether it is a command that anybody may give who may look."""
+        return uuid in self._camera_commands
 
     def check_update(self, client_id: int, uuid: str, updates: dict[str, Any]) -> None:
         """Raise Unacceptable unless one enabled control's value is set to one that it can have."""
@@ -105,5 +112,5 @@ def _number(value: object, low: float | None, high: float | None, whole: bool = 
 
 
 def _disabled(handle: Any) -> bool:
-    """A group cannot be disabled, and says so as if it were asked to be."""
-    return bool(handle.disabled) or not handle.visible
+    """Also what is hidden, and what is shown only, such as a bar of progress."""
+    return bool(getattr(handle, "disabled", True)) or not handle.visible

@@ -1,7 +1,7 @@
 """The front server: listens, says where, and closes."""
 
 import socket
-from collections.abc import Sequence
+from collections.abc import Collection, Sequence
 from pathlib import Path
 from threading import Event as ThreadEvent
 from threading import Thread
@@ -9,6 +9,7 @@ from threading import Thread
 import uvicorn
 from starlette.routing import BaseRoute
 from starlette.types import ASGIApp
+from viser import CommandHandle
 
 from app.door.controls import Controls
 from app.door.entrance import Entrance
@@ -17,6 +18,7 @@ from app.door.gate import Gate
 from app.door.guard import Guard
 from app.door.hidden_viser import HiddenViser
 from app.door.listening import Certificate
+from app.door.notices import Notices
 from app.door.passes import OneTimeKey, Passes
 from app.host import is_loopback
 
@@ -37,12 +39,13 @@ class Door:
         host: str = "127.0.0.1",
         certificate: Certificate | None = None,
         passes: Passes | None = None,
+        camera_commands: Collection[CommandHandle] = (),
     ) -> None:
         """`bound` is what `listen` has given for the host and the certificate."""
         self._hidden, self._socket, self._host, self._certificate = hidden, bound, host, certificate
         self.port: int = bound.getsockname()[1]
         self._one_time = OneTimeKey() if is_loopback(host) else None
-        self.guard = Guard(Controls(hidden.server))
+        self.guard = Guard(Controls(hidden.server, camera_commands), Notices(hidden.server).tell_watcher)
         self.gate = Gate(people, f"rotrecon-{self.port}", passes or Passes(), self._one_time)
 
     @property

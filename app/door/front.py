@@ -73,7 +73,7 @@ def with_headers(app: ASGIApp) -> ASGIApp:
                 headers.setdefault("Content-Security-Policy", STRICT)
                 headers.setdefault("Cache-Control", "no-store")
                 headers["X-Content-Type-Options"] = "nosniff"
-                headers["Referrer-Policy"] = "no-referrer"
+                headers["Referrer-Policy"] = "same-origin"  # with no-referrer a form's Origin would be null
                 headers["Cross-Origin-Opener-Policy"] = "same-origin"
             await send(message)
 

@@ -2,6 +2,7 @@
 
 import logging
 from collections import Counter
+from collections.abc import Callable
 from typing import assert_never
 
 from app.door.controls import Controls
@@ -19,14 +20,16 @@ from app.door.messages import (
     written,
 )
 
+WATCHING = "only watching"
 log = logging.getLogger(__name__)
 
 
 class Guard:
     """Lets messages of pages through to viser, or drops and counts them."""
 
-    def __init__(self, controls: Controls) -> None:
-        self._controls = controls
+    def __init__(self, controls: Controls, tell_watcher: Callable[[int], None] = lambda client_id: None) -> None:
+        """`tell_watcher` says on a page why what was done there changes nothing."""
+        self._controls, self._tell_watcher = controls, tell_watcher
         self.refused: Counter[str] = Counter()
         """How many messages and connections were refused, by reason."""
 
@@ -37,6 +40,8 @@ class Guard:
             self._check(visit, message)
         except Unacceptable as error:
             self.refuse(str(error), visit.visitor.name)
+            if str(error) == WATCHING and visit.client_id is not None:
+                self._tell_watcher(visit.client_id)
             return None
         return written(message)
 
@@ -46,11 +51,14 @@ class Guard:
         if self.refused[reason] == 1:
             log.warning("refused from %s: %s", name, reason)
 
+    def _moves_camera(self, message: Allowed) -> bool:
+        return isinstance(message, CommandTriggerMessage) and self._controls.moves_camera(message.uuid)
+
     def _check(self, visit: Visit, message: Allowed) -> None:
         if isinstance(message, ViewerCameraMessage):
             return
-        if visit.visitor.role != "operator":
-            raise Unacceptable("only watching")
+        if visit.visitor.role != "operator" and not self._moves_camera(message):
+            raise Unacceptable(WATCHING)
         if visit.client_id is None:
             raise Unacceptable("too early")
         match message:

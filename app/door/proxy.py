@@ -28,11 +28,12 @@ async def carry(page: WebSocket, visit: Visit, hidden: HiddenViser, guard: Guard
             max_size=None,
             proxy=None,
         )
-    except (OSError, InvalidHandshake):
+    except BaseException as error:
+        hidden.forget(visit)
+        if not isinstance(error, OSError | InvalidHandshake):
+            raise
         await page.close(TRY_AGAIN_LATER)
         return
-    finally:
-        hidden.forget(visit)
     async with upstream:
         await page.accept(upstream.subprotocol)
         both = (_to_viser(page, upstream, visit, guard), _to_page(page, upstream), _stay(may_stay))
