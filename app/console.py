@@ -78,12 +78,13 @@ class Console:
     ) -> None:
         """`open_viser` starts the server that its pages are on; without, one listens on `host` and `port` itself."""
         self.session = Session((frame.camera.width, frame.camera.height))
-        self.frame, self._name, self._settings, self._notes = frame, name, settings, notes
+        self.frame, self.name, self._settings, self._notes = frame, name, settings, notes
         self._host, self._port, self._cloud_points = host, port, cloud_points
         self.pages: dict[int, PageView] = {}
         self._open_viser = open_viser or self._open_server
         self._opened: dict[int, ClientHandle] = {}
         self._measuring: dict[int, asyncio.Task[None]] = {}
+        self._listeners: dict[object, Callable[[], object]] = {}
 
     @property
     def address(self) -> str:
@@ -102,7 +103,7 @@ class Console:
         self.server.gui.configure_theme(
             dark_mode=True, show_logo=False, show_share_button=False, brand_color=BRAND_COLOR
         )
-        self.panels = Panels(self.server, self._name, self._notes, self._post_from)
+        self.panels = Panels(self.server, self.name, self._notes, self._post_from)
         self._scene = SceneView(
             self.server, self.frame, self._pictures.television(None, "picture"), self._cloud_points, self._post_from
         )
@@ -121,6 +122,12 @@ class Console:
         self._running.result()
         with redirect_stdout(io.StringIO()):
             self.server.stop()
+
+    def subscribe(self, changed: Callable[[], object]) -> Callable[[], object]:
+        """Call `changed`, quickly done, after the session may have changed; returns what ends that. Of any thread."""
+        listener = object()
+        self._listeners[listener] = changed
+        return lambda: self._listeners.pop(listener, None)
 
     async def idle(self) -> None:
         """Return, in viser's event loop, when the queue is empty, nothing is measured, and all is shown and flushed."""
@@ -147,6 +154,9 @@ class Console:
                 with _logged("what happened was not taken in"):
                     self._take(item)
             self._measure_latest()
+            for changed in list(self._listeners.values()):
+                with _logged("a listener was not told"):
+                    changed()
             await asyncio.to_thread(self._show)
             self.server.flush()
             if self._queue.empty() and not self._measuring:

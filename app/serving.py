@@ -8,6 +8,8 @@ from app.console import Console
 from app.door.door import Door
 from app.door.hidden_viser import HiddenViser
 from app.door.listening import Certificate, listen
+from app.robot.api import robot_routes
+from app.robot.cell import ConsoleCell
 from rotrecon.frame import Frame
 from rotrecon.settings import Settings
 
@@ -35,7 +37,7 @@ def serve(
     console.start()
     door = Door(hidden, people, socket, host, certificate, camera_commands=console.panels.camera_commands)
     try:
-        door.start()
+        door.start(robot_routes(ConsoleCell(console), door.gate, door.guard))
         for line in (*notes, *announcements(door)):
             announce(line)
         ThreadEvent().wait()
