@@ -8,10 +8,10 @@ from pathlib import Path
 from types import MappingProxyType
 from typing import Literal, get_args
 
-import platformdirs
 from argon2 import PasswordHasher
 from argon2.exceptions import InvalidHashError, VerificationError
 
+from app.record.store import data_folder
 from rotrecon.files import write_whole
 
 Role = Literal["operator", "watcher", "robot"]
@@ -47,7 +47,7 @@ class Visitor:
 
 def people_file(data: Path | None) -> Path:
     """The file of people in a folder of data, or in the user's own."""
-    return (data or platformdirs.user_data_path("rotrecon", appauthor=False)) / "users.json"
+    return (data or data_folder()) / "users.json"
 
 
 def read_people(path: Path) -> Mapping[str, Person]:

@@ -8,6 +8,7 @@ from typing import Protocol
 
 from app.console import Console
 from app.decision import Decision, DecisionSource, proposal
+from app.digest import evidence_digest
 from rotrecon.frame import Capture, Frame
 from rotrecon.primitives import Primitive
 from rotrecon.reconstruction import Reconstruction
@@ -56,9 +57,8 @@ class Cell(DecisionSource, Protocol):
 class ConsoleCell:
     """The console as the robot's side sees it: the result on the page is what is proposed."""
 
-    def __init__(self, console: Console, digest_of: Callable[[Reconstruction], str] | None = None) -> None:
-        """`digest_of` gives the digest that the operator's decision will be bound to."""
-        self._console, self._digest_of = console, digest_of
+    def __init__(self, console: Console) -> None:
+        self._console = console
         self._known: tuple[Reconstruction | None, Decision] = (None, Decision())
         self._lock = threading.Lock()
         self._offered: Offer | None = None
@@ -71,10 +71,12 @@ class ConsoleCell:
     def decision(self) -> Decision:
         """What is proposed for the drawing as it is; idle while that is being measured."""
         session = self._console.session
-        result = session.reconstruction if session.up_to_date and session.preview is None else None
+        result, drawing = session.reconstruction, session.shown.complete
+        if result is None or drawing is None or session.preview is not None or not session.up_to_date:
+            return Decision()
         with self._lock:
             if self._known[0] is not result:
-                digest = None if result is None or self._digest_of is None else self._digest_of(result)
+                digest = evidence_digest(result.frame, drawing, result.settings, result)
                 self._known = (result, proposal(result, digest))
             return self._known[1]
 

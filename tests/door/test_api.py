@@ -17,6 +17,7 @@ from websockets.exceptions import ConnectionClosed, InvalidStatus
 from websockets.sync.client import ClientConnection, connect
 
 from app.console import Console, FromPage
+from app.digest import evidence_digest
 from app.door.door import Door
 from app.door.hidden_viser import HiddenViser
 from app.door.listening import listen
@@ -33,7 +34,6 @@ from tests.door.conftest import SECRET
 from tests.exact import cylinder, exact_frame
 from tests.waiting import WAIT_S, until
 
-DIGEST = "d1gest"
 SOLID = cylinder(np.array([0.0, 0.0, 0.8]), np.array([0.0, 1.0, 0.0]), 0.06)
 DRAWN = (PointerDragged((130.0, 40.0), (190.0, 200.0)), PointerDragged((160.0, 60.0), (160.0, 180.0), shift=True))
 
@@ -47,7 +47,7 @@ class Cell:
         self.console = Console(frame, "A rod", Settings(), cloud_points=10, open_viser=hidden.open)
         self.console.start()
         self.door = Door(hidden, people, listen("127.0.0.1", 0, people, None))
-        cell = ConsoleCell(self.console, lambda result: DIGEST)
+        cell = ConsoleCell(self.console)
         self.door.start(robot_routes(cell, self.door.gate, self.door.guard))
         self.address = f"{self.door.address}/api/v1"
 
@@ -102,7 +102,10 @@ def test_what_is_drawn_is_proposed_and_what_is_cleared_is_not(cell: Cell, robot:
     cell.do(*DRAWN)
     told, solid = robot.get("/decision").json(), result_of(cell).solid
     assert solid is not None
-    assert (told["state"], told["digest"], told["frame"], told["kind"]) == ("proposed", DIGEST, "base", solid.kind)
+    assert (told["state"], told["frame"], told["kind"]) == ("proposed", "base", solid.kind)
+    drawing, result = cell.console.session.shown.complete, result_of(cell)
+    assert drawing is not None
+    assert told["digest"] == evidence_digest(cell.console.frame, drawing, Settings(), result)
     assert (told["who"], told["valid_until"]) == (None, None), "nobody has decided"
     assert told["diameter_m"] == 2 * float(solid.radius_at(0.0))
     low, high = told["diameter_interval_m"]
