@@ -8,11 +8,12 @@ from typing import Annotated, Literal
 
 import typer
 
+from app import log_cli, user_cli
 from app.describe import describe, describe_result, matching_notes
+from app.door.people import PeopleError, people_file
 from app.drawing_text import parse_area, parse_axis, stroke_text
 from app.flaw_text import FLAW_HELP, parse_flaws
 from app.host import HostError
-from app.log_cli import add_to
 from app.record.errors import StoreError
 from app.writing import write_file
 from rotrecon.answer import answer, cannot
@@ -41,7 +42,8 @@ cli = typer.Typer(
     pretty_exceptions_enable=False,
     help="Measures objects of revolution in front of a robot arm, and names the tool that fits them.",
 )
-add_to(cli)
+log_cli.add_to(cli)
+user_cli.add_to(cli)
 DEMO = "leg"
 BAD_INPUT, CANNOT = 2, 3
 
@@ -57,7 +59,7 @@ def main() -> None:
     """Run the command; bad input is one sentence on stderr and exit code 2."""
     try:
         cli()
-    except (SceneError, DrawingError, ToolTableError, HostError, StoreError) as error:
+    except (SceneError, DrawingError, ToolTableError, HostError, StoreError, PeopleError) as error:
         typer.echo(f"rotrecon: {error}", err=True)
         sys.exit(BAD_INPUT)
 
@@ -132,22 +134,32 @@ def _write_overlay(path: Path, result: Reconstruction) -> None:
 @cli.command()
 def serve(
     scene: Annotated[Path | None, typer.Argument(metavar="[SCENE]", help="A scene folder; without: a demo.")] = None,
-    host: Annotated[str, typer.Option(help="Address to listen on.")] = "127.0.0.1",
-    port: Annotated[int, typer.Option(min=1, max=65535, help="The next free one if it is taken.")] = 8080,
+    host: Annotated[str, typer.Option(help="Address to listen on; others can reach it only with users and TLS.")] = (
+        "127.0.0.1"
+    ),
+    port: Annotated[int, typer.Option(min=1, max=65535, help="Port to listen on.")] = 8080,
+    certificate: Annotated[Path | None, typer.Option(metavar="FILE", help="TLS certificate, PEM.")] = None,
+    key: Annotated[Path | None, typer.Option(metavar="FILE", help="Private key of the certificate, PEM.")] = None,
+    data: Annotated[Path | None, typer.Option(metavar="DIR", help="The folder of users; else your own.")] = None,
     method: MethodName = Settings.method,
     tools: ToolFile = None,
     layers: Layers = 2,
 ) -> None:
-    """Open the operator's console on a scene."""
+    """Open the operator's console on a scene; the link it prints logs in."""
+    if (certificate is None) != (key is None):
+        raise typer.BadParameter("--certificate and --key belong together; give both")
     capture = _demo() if scene is None else read_scene(scene)
     frame = capture.frame()
     if isinstance(frame, FrameUnavailable):
         typer.echo(f"rotrecon: {frame.reason}", err=True)
         raise typer.Exit(CANNOT)
     settings = Settings(method=method, layers=layers, tools=default_tools() if tools is None else read_tools(tools))
+    from app.door.listening import Certificate
     from app.serving import serve as serve_console  # viser takes a second to import, which no other command needs
 
-    serve_console(frame, capture.name, settings, host, port, notes=(*capture.notes, *matching_notes(frame)))
+    files = None if certificate is None or key is None else Certificate(certificate, key)
+    people, notes = people_file(data), (*capture.notes, *matching_notes(frame))
+    serve_console(frame, capture.name, settings, host, port, people=people, certificate=files, notes=notes)
 
 
 def _demo() -> Capture:

@@ -3,7 +3,7 @@
 import asyncio
 import io
 import logging
-from collections.abc import Iterator
+from collections.abc import Callable, Iterator
 from contextlib import contextmanager, redirect_stdout
 from dataclasses import dataclass
 
@@ -74,13 +74,17 @@ class Console:
         *,
         notes: tuple[str, ...] = (),
         cloud_points: int = CLOUD_POINTS,
+        open_viser: Callable[[], ViserServer] | None = None,
     ) -> None:
+        """`open_viser` starts the server that its pages are on; without, one listens on `host` and `port` itself."""
         self.session = Session((frame.camera.width, frame.camera.height))
-        self.frame, self._name, self._settings, self._notes = frame, name, settings, notes
+        self.frame, self.name, self._settings, self._notes = frame, name, settings, notes
         self._host, self._port, self._cloud_points = host, port, cloud_points
         self.pages: dict[int, PageView] = {}
+        self._open_viser = open_viser or self._open_server
         self._opened: dict[int, ClientHandle] = {}
         self._measuring: dict[int, asyncio.Task[None]] = {}
+        self._listeners: dict[object, Callable[[], object]] = {}
 
     @property
     def address(self) -> str:
@@ -90,8 +94,7 @@ class Console:
 
     def start(self) -> None:
         """Open the server and show the frame; returns when pages can be opened."""
-        with redirect_stdout(io.StringIO()):
-            self.server = ViserServer(self._host, self._port, verbose=False)
+        self.server = self._open_viser()
         self.server.request_share_url = _refuse_to_share
         self._loop = self.server.get_event_loop()
         self._queue: asyncio.Queue[Item] = asyncio.Queue()
@@ -100,7 +103,7 @@ class Console:
         self.server.gui.configure_theme(
             dark_mode=True, show_logo=False, show_share_button=False, brand_color=BRAND_COLOR
         )
-        self.panels = Panels(self.server, self._name, self._notes, self._post_from)
+        self.panels = Panels(self.server, self.name, self._notes, self._post_from)
         self._scene = SceneView(
             self.server, self.frame, self._pictures.television(None, "picture"), self._cloud_points, self._post_from
         )
@@ -109,12 +112,22 @@ class Console:
         self.server.on_client_connect(self._page_opened)
         self.server.on_client_disconnect(self._page_closed)
 
+    def _open_server(self) -> ViserServer:
+        with redirect_stdout(io.StringIO()):
+            return ViserServer(self._host, self._port, verbose=False)
+
     def stop(self) -> None:
         """Close the server and every page, when what is being shown is shown; measurements are given up."""
         self._loop.call_soon_threadsafe(self.post, Stopped())
         self._running.result()
         with redirect_stdout(io.StringIO()):
             self.server.stop()
+
+    def subscribe(self, changed: Callable[[], object]) -> Callable[[], object]:
+        """Call `changed`, quickly done, after the session may have changed; returns what ends that. Of any thread."""
+        listener = object()
+        self._listeners[listener] = changed
+        return lambda: self._listeners.pop(listener, None)
 
     async def idle(self) -> None:
         """Return, in viser's event loop, when the queue is empty, nothing is measured, and all is shown and flushed."""
@@ -141,6 +154,9 @@ class Console:
                 with _logged("what happened was not taken in"):
                     self._take(item)
             self._measure_latest()
+            for changed in list(self._listeners.values()):
+                with _logged("a listener was not told"):
+                    changed()
             await asyncio.to_thread(self._show)
             self.server.flush()
             if self._queue.empty() and not self._measuring:

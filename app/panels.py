@@ -4,7 +4,7 @@ from collections.abc import Callable, Mapping
 from html import escape
 from typing import Any
 
-from viser import GuiEvent, ViserServer
+from viser import CommandHandle, GuiEvent, ViserServer
 
 from app.events import (
     Cancelled,
@@ -61,6 +61,8 @@ class Panels:
 
     def __init__(self, server: ViserServer, name: str, notes: tuple[str, ...], post: Post) -> None:
         self._gui, self._post = server.gui, post
+        self.camera_commands: list[CommandHandle] = []
+        """Commands that move the camera of the page they come from and do nothing else."""
         self._gui.set_panel_label("rotrecon")
         self._gui.main_panel.dock_right()
         self._gui.main_panel.set_width(PANEL_WIDTH_PX)
@@ -125,6 +127,8 @@ class Panels:
         for label, key, modifier, event in KEYS:
             command = self._gui.add_command(label, hotkey=key, modifier=modifier)
             command.on_trigger(self._choosing(lambda _, event=event: event, read=False))
+            if isinstance(event, ViewChosen | Zoomed):
+                self.camera_commands.append(command)
 
     def _choosing(self, event_of: Callable[[Any], Event | PageEvent | None], read: bool = True) -> Any:
         """A callback that posts the event a value stands for, when a page and not the program has set it."""

@@ -1,10 +1,15 @@
-"""Serves the console until it is interrupted, and says where it is to be found and who can reach it."""
+"""Serves the console through the guarded door until it is interrupted, and says how it is reached."""
 
 from collections.abc import Callable
+from pathlib import Path
 from threading import Event as ThreadEvent
 
 from app.console import Console
-from app.host import check_host, is_loopback
+from app.door.door import Door
+from app.door.hidden_viser import HiddenViser
+from app.door.listening import Certificate, listen
+from app.robot.api import robot_routes
+from app.robot.cell import ConsoleCell
 from rotrecon.frame import Frame
 from rotrecon.settings import Settings
 
@@ -16,34 +21,38 @@ def serve(
     host: str = "127.0.0.1",
     port: int = 8080,
     *,
+    people: Path,
+    certificate: Certificate | None = None,
     notes: tuple[str, ...] = (),
     announce: Callable[[str], None] = print,
 ) -> None:
-    """Serve the console until interrupted; says where it is to be found, and whether others can reach it.
+    """Serve the console until interrupted; says where it is to be found, and how to get in.
 
-    Raises HostError for a host that is not this machine's.
+    Raises HostError, before anything is opened, for an address that cannot be listened on, is taken, or that others
+    can reach while users or TLS are missing; PeopleError for a file of users that cannot be used.
     """
-    check_host(host)
-    console = Console(frame, name, settings, host, port, notes=notes)
+    socket = listen(host, port, people, certificate)
+    hidden = HiddenViser()
+    console = Console(frame, name, settings, notes=notes, open_viser=hidden.open)
     console.start()
+    door = Door(hidden, people, socket, host, certificate, camera_commands=console.panels.camera_commands)
     try:
-        for line in (*notes, *announcements(host, port, console.server.get_port(), console.address)):
+        door.start(robot_routes(ConsoleCell(console), door.gate, door.guard))
+        for line in (*notes, *announcements(door)):
             announce(line)
         ThreadEvent().wait()
     except KeyboardInterrupt:
         announce("Closed.")
     finally:
+        door.stop()
         console.stop()
 
 
-def announcements(host: str, asked_port: int, port: int, address: str) -> tuple[str, ...]:
-    """What has to be said when the server is open."""
-    lines: list[str] = []
-    if port != asked_port:
-        lines.append(f"Port {asked_port} is taken; using {port} instead.")
-    if not is_loopback(host):
-        lines.append(
-            f"WARNING: listening on {host}: everybody who can reach this machine can see the picture and draw on it. "
-            "Nobody is asked for a password. Leave --host out to keep it to this machine."
-        )
-    return (*lines, f"The console is open at {address}  (Ctrl+C closes it)")
+def announcements(door: Door) -> tuple[str, ...]:
+    """What has to be said when the door is open."""
+    if door.link is None:
+        return (f"The console is open at {door.address}; users log in  (Ctrl+C closes it)",)
+    return (
+        f"The console is open at {door.link}  (Ctrl+C closes it)",
+        f"That link works once; with a user's name and secret log in at {door.address}",
+    )

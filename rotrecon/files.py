@@ -4,10 +4,13 @@ import os
 import secrets
 from pathlib import Path
 
+ANYBODY = 0o666
+"""Permissions of a file that the umask alone limits."""
 
-def write_durably(path: Path, content: bytes) -> None:
+
+def write_durably(path: Path, content: bytes, mode: int = ANYBODY) -> None:
     """Write a new file and put it on disk; OSError when it exists or cannot be written."""
-    with path.open("xb") as file:
+    with open(path, "xb", opener=lambda name, flags: os.open(name, flags, mode)) as file:
         file.write(content)
         file.flush()
         os.fsync(file.fileno())
@@ -22,11 +25,11 @@ def flush_folder(folder: Path) -> None:
         os.close(handle)
 
 
-def write_whole(path: Path, content: bytes) -> None:
-    """Write or replace a file, aside first and renamed into place."""
+def write_whole(path: Path, content: bytes, mode: int = ANYBODY) -> None:
+    """Write or replace a file, aside first and renamed into place; `mode` is its permissions before the umask."""
     aside = path.with_name(f".{path.name}.{secrets.token_hex(4)}.partial")
     try:
-        write_durably(aside, content)
+        write_durably(aside, content, mode)
         aside.replace(path)
         flush_folder(path.resolve().parent)
     finally:

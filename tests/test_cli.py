@@ -1,5 +1,6 @@
 import json
 import re
+import socket
 import sys
 from pathlib import Path
 from typing import get_args
@@ -266,6 +267,26 @@ def test_serve_refuses_a_host_that_is_not_this_machine(rotrecon, scene):
         assert code == 2
         assert host in err
         assert err.count("\n") == 1
+
+
+def test_serve_refuses_what_is_not_guarded_and_half_a_certificate(rotrecon, scene, tmp_path):
+    code, _, err = rotrecon("serve", scene, "--host", "0.0.0.0", "--data", tmp_path)
+    assert code == 2
+    assert "rotrecon user add" in err
+    assert "--certificate" in err
+    code, _, err = rotrecon("serve", scene, "--certificate", tmp_path / "cert.pem")
+    assert code == 2
+    assert "--key" in err
+
+
+def test_serve_refuses_a_port_that_is_taken(rotrecon, scene):
+    with socket.socket() as taken:
+        taken.bind(("127.0.0.1", 0))
+        taken.listen()
+        code, _, err = rotrecon("serve", scene, "--port", taken.getsockname()[1])
+    assert code == 2
+    assert "give another one with --port" in err
+    assert err.count("\n") == 1
 
 
 def test_fit_proposes_the_axis_that_is_left_out_and_says_so(rotrecon, scene):

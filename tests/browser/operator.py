@@ -40,11 +40,15 @@ BACKDROP_LEVEL = 24
 class Operator:
     """A page in a browser, and the console behind it."""
 
-    def __init__(self, page: Page, console: Console) -> None:
+    def __init__(self, page: Page, console: Console, enter: Callable[[Page], object] | None = None) -> None:
+        """`enter` opens the page by another way than the console's own address."""
         self.page, self.console = page, console
         page.set_default_timeout(1000 * TIMEOUT_S)
         known = set(console.pages)
-        page.goto(console.address)
+        if enter is None:
+            page.goto(console.address)
+        else:
+            enter(page)
         self.until(lambda: len(set(console.pages) - known) == 1, "the page has connected")
         (self.client_id,) = set(console.pages) - known
         self._dismiss_software_notice()

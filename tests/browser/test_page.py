@@ -1,15 +1,14 @@
 """What belongs to one page: its view, zoom, layers and section; and what the server does not do for anybody."""
 
-import socket
+from pathlib import Path
 
 import numpy as np
 import pytest
 from playwright.sync_api import Browser, expect
 
-from app.console import Console
 from app.events import Event, PointerDragged, PolygonClosed, SectionToggled, VertexClicked
 from app.host import HostError, check_host
-from app.serving import announcements, serve
+from app.serving import serve
 from rotrecon.overlay import section_pixels
 from rotrecon.settings import Settings
 from rotrecon.simulation.simulate import Simulated
@@ -148,9 +147,9 @@ def test_sharing_is_refused_and_not_offered(operator: Operator) -> None:
 
 
 @pytest.mark.parametrize("host", ["nonsense.invalid", "192.0.2.1", "2001:db8::1", "", "..", "a" * 80, "1 2", "\0"])
-def test_a_host_that_is_not_this_machines_is_refused_at_once(host: str, scene: Simulated) -> None:
+def test_a_host_that_is_not_this_machines_is_refused_at_once(host: str, scene: Simulated, tmp_path: Path) -> None:
     with pytest.raises(HostError) as refused:
-        serve(scene.frame, "A pipe", Settings(), host, announce=lambda line: None)
+        serve(scene.frame, "A pipe", Settings(), host, people=tmp_path / "users.json", announce=lambda line: None)
     assert repr(host) in str(refused.value)
     assert "leave --host out" in str(refused.value)
 
@@ -158,20 +157,3 @@ def test_a_host_that_is_not_this_machines_is_refused_at_once(host: str, scene: S
 @pytest.mark.parametrize("host", ["127.0.0.1", "localhost", "0.0.0.0"])
 def test_a_host_of_this_machine_is_taken(host: str) -> None:
     check_host(host)
-
-
-def test_the_server_listens_on_loopback_only_and_says_so_when_not(scene: Simulated) -> None:
-    with socket.socket() as taken:
-        taken.bind(("127.0.0.1", 0))
-        taken.listen()
-        port = taken.getsockname()[1]
-        console = Console(scene.frame, "A pipe", Settings(), port=port, cloud_points=10)
-        console.start()
-        real = console.server.get_port()
-        assert console.server.get_host() == "127.0.0.1"
-        assert real != port
-        assert console.address == f"http://127.0.0.1:{real}"
-        assert any(f"Port {port} is taken" in line for line in announcements("127.0.0.1", port, real, console.address))
-        console.stop()
-    assert not any("WARNING" in line for line in announcements("127.0.0.1", 8080, 8080, "address"))
-    assert any("WARNING" in line for line in announcements("0.0.0.0", 8080, 8080, "address"))

@@ -13,12 +13,12 @@ from app.bench.accuracy.statistics import (
     radius_coverage,
     refused_share,
 )
-from app.bench.table2.trials import AROUND_PX, BASELINES_M, PLAIN, TEXTURED, Plan, Trial, chosen, trials
 from app.bench.table import NONE, table, wrapped
+from app.bench.table2.trials import AROUND_PX, BASELINES_M, PLAIN, TEXTURED, Plan, Trial, chosen, trials
 from rotrecon.arrays import Floats
 from rotrecon.settings import Method
 from rotrecon.simulation.flaws import Flaws
-from rotrecon.simulation.simulate import DISTANCE_M, OBJECTS
+from rotrecon.simulation.simulate import DISTANCE_M
 from rotrecon.simulation.stereo import VIEWS_CAMERA
 
 PAPER_MM = {"leg": (36, 32, 11), "ball": (216, 192, 11), "wire": (25, 22, 12)}

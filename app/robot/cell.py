@@ -1,0 +1,113 @@
+"""What the robot's side knows of the console, and what it gives to it."""
+
+import threading
+from collections.abc import Callable
+from dataclasses import dataclass
+from datetime import UTC, datetime
+from typing import Protocol
+
+from app.console import Console
+from app.decision import Decision, DecisionSource, proposal
+from app.digest import evidence_digest
+from rotrecon.frame import Capture, Frame
+from rotrecon.primitives import Primitive
+from rotrecon.reconstruction import Reconstruction
+
+NOTICE_S = 10.0
+
+
+@dataclass(frozen=True, eq=False)
+class Offer:
+    """A capture that a robot has pushed in."""
+
+    capture: Capture
+    who: str
+    when: datetime
+
+
+class Cell(DecisionSource, Protocol):
+    """Everything that the interface reads and writes; called from any thread."""
+
+    @property
+    def name(self) -> str:
+        """Of the scene that is held."""
+        ...
+
+    def frame(self) -> Frame:
+        """The frame that is held, which the decision rests on."""
+        ...
+
+    def solid(self) -> Primitive | None:
+        """The fitted solid in base coordinates, if there is one."""
+        ...
+
+    def pages(self) -> int:
+        """How many pages are open."""
+        ...
+
+    def offer(self, capture: Capture, who: str) -> Offer:
+        """Take a newer capture; whether and when it is looked at is the operator's choice."""
+        ...
+
+    def offered(self) -> Offer | None:
+        """The newest capture that was pushed in."""
+        ...
+
+
+class ConsoleCell:
+    """The console as the robot's side sees it: the result on the page is what is proposed."""
+
+    def __init__(self, console: Console) -> None:
+        self._console = console
+        self._known: tuple[Reconstruction | None, Decision] = (None, Decision())
+        self._lock = threading.Lock()
+        self._offered: Offer | None = None
+
+    @property
+    def name(self) -> str:
+        """Of the scene."""
+        return self._console.name
+
+    def decision(self) -> Decision:
+        """What is proposed for the drawing as it is; idle while that is being measured."""
+        session = self._console.session
+        result, drawing = session.reconstruction, session.shown.complete
+        if result is None or drawing is None or session.preview is not None or not session.up_to_date:
+            return Decision()
+        with self._lock:
+            if self._known[0] is not result:
+                digest = evidence_digest(result.frame, drawing, result.settings, result)
+                self._known = (result, proposal(result, digest))
+            return self._known[1]
+
+    def subscribe(self, changed: Callable[[], object]) -> Callable[[], object]:
+        """See `DecisionSource`."""
+        return self._console.subscribe(changed)
+
+    def frame(self) -> Frame:
+        """See `Cell`."""
+        return self._console.frame
+
+    def solid(self) -> Primitive | None:
+        """See `Cell`."""
+        result = self._console.session.reconstruction
+        return None if result is None else result.solid
+
+    def pages(self) -> int:
+        """See `Cell`."""
+        return len(self._console.server.get_clients())
+
+    def offered(self) -> Offer | None:
+        """See `Cell`."""
+        return self._offered
+
+    def offer(self, capture: Capture, who: str) -> Offer:
+        """Keep it, and say so on every page: the frame that is being worked on is held."""
+        self._offered = Offer(capture, who, datetime.now(UTC))
+        for client in self._console.server.get_clients().values():
+            client.add_notification(
+                "A newer frame has arrived",
+                f"{capture.name}, from {who}. What you see and measure is still the frame before it.",
+                auto_close_seconds=NOTICE_S,
+            )
+        return self._offered

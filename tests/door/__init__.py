@@ -1,0 +1,1 @@
+"""The guarded door: who comes in, and what a page may send."""
