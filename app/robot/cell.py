@@ -9,7 +9,8 @@ from typing import Protocol
 from app.console import Console
 from app.decision import Decision, DecisionSource, proposal
 from app.digest import evidence_digest
-from rotrecon.frame import Capture, Frame
+from rotrecon.capture import Capture
+from rotrecon.frame import Frame
 from rotrecon.primitives import Primitive
 from rotrecon.reconstruction import Reconstruction
 

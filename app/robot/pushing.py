@@ -6,8 +6,8 @@ from pathlib import Path, PurePosixPath
 from typing import IO
 from zipfile import BadZipFile, ZipFile, ZipInfo
 
+from rotrecon.capture import Capture
 from rotrecon.errors import SceneError
-from rotrecon.frame import Capture
 from rotrecon.scene.reading import read_scene
 
 LARGEST_PUSH = 256 << 20
