@@ -1,0 +1,68 @@
+"""Which pixels of the reference picture show a surface that another camera sees as well."""
+
+import cv2
+import numpy as np
+
+from rotrecon.arrays import Bools, Floats
+from rotrecon.photometry.carrying import Carrier
+from rotrecon.rays.patch import Patch
+from rotrecon.rays.surfaces import Lateral, Rays, Surface
+
+GUARD_PX = 2.0
+"""Distance from the outline in either picture: blur and splines mix what is behind into pixels that are nearer."""
+STEEPEST = float(np.cos(np.deg2rad(70.0)))
+"""Least cosine of incidence: beyond, a pixel of one picture is spread over several of the other."""
+AGREES_SIGMA, AGREES_RADIUS = 4.0, 0.1
+"""Matched depth agrees with a surface within so many sigma, or this share of the radius."""
+ROUND_ABOUT_PX = 9
+"""Side of the window of which half the known depths must agree: they are rough, and full of holes."""
+
+
+def shown(surface: Surface, patch: Patch, sigma: float) -> Bools:
+    """(N,) pixels of a patch that show a surface of which matched depth agrees with a sigma, clear of its outline."""
+    trace = surface.trace(patch.rays)
+    points = patch.rays * trace.depth_m
+    clear = patch.drawn & trace.hit & (trace.depth_m > 0) & _faces(surface, points, np.zeros(3))
+    clear &= _inside(surface, patch.rays, patch.focal_px)
+    off_m = np.abs(patch.depth_m - trace.depth_m)
+    near = off_m < np.maximum(AGREES_SIGMA * sigma * patch.noise.sigma_m(trace.depth_m), AGREES_RADIUS * surface.size_m)
+    known = np.isfinite(patch.depth_m)
+    return clear & (_summed(near, patch.shape) >= 0.5 * _summed(known, patch.shape))
+
+
+def seen_too(surface: Surface, rays: Rays, carrier: Carrier) -> Bools:
+    """(N,) which of the points where rays meet a surface another camera sees clear of its outline there."""
+    points = rays * surface.trace(rays).depth_m
+    carried = carrier.T_view_reference[:3, :3] @ points + carrier.T_view_reference[:3, 3:]
+    ahead = carried[2] > 0
+    rays_there = carried / np.where(ahead, carried[2], 1.0)
+    inside = _inside(carrier.surface(surface), rays_there, carrier.camera.focal_px)
+    return ahead & inside & _faces(surface, points, carrier.center_m)
+
+
+def _faces(surface: Surface, points: Floats, camera_m: Floats) -> Bools:
+    """Which points (3, N) of a surface are seen at no steep incidence from a camera at (3,)."""
+    offset = points - surface.center_m[:, None]
+    if isinstance(surface, Lateral):
+        x, y, height = surface.turn @ offset
+        outward = surface.turn.T @ np.stack([x, y, -surface.slope * (surface.radius_m + surface.slope * height)])
+    else:
+        outward = offset
+    toward = camera_m[:, None] - points
+    size = np.sqrt((outward**2).sum(axis=0) * (toward**2).sum(axis=0))
+    return -surface.side * (outward * toward).sum(axis=0) > STEEPEST * size
+
+
+def _inside(surface: Surface, rays: Rays, focal_px: float) -> Bools:
+    """Which rays pass inside an outline by more than the guard; all for a surface seen from inside."""
+    if surface.side > 0:
+        return np.ones(rays.shape[1], dtype=np.bool_)
+    tangency = surface.tangency(rays)
+    return tangency.gap_m * focal_px < -GUARD_PX * np.abs(tangency.depth_m)
+
+
+def _summed(which: Bools, shape: tuple[int, int]) -> Floats:
+    """Numbers (N,) of pixels in the window round each."""
+    image = which.reshape(shape).astype(np.float32)
+    side = (ROUND_ABOUT_PX, ROUND_ABOUT_PX)
+    return np.asarray(cv2.boxFilter(image, -1, side, normalize=False, borderType=cv2.BORDER_CONSTANT)).ravel()
