@@ -1,87 +1,83 @@
 """A fitted surface refined until the pictures of several cameras agree over it, outlines in all of them included."""
 
-from dataclasses import dataclass, replace
+from dataclasses import replace
 
 import numpy as np
 
-from rotrecon.arrays import Bools, Bytes, Floats, Indices, freeze
-from rotrecon.drawing import CrossSegments
-from rotrecon.frame import View
-from rotrecon.photometry.agreement import LEAST_SIGMA, Agreement
-from rotrecon.photometry.carrying import Carrier, carrier_of
+from rotrecon.arrays import Floats
+from rotrecon.frame import Frame
+from rotrecon.photometry.carrying import carrier_of
+from rotrecon.photometry.matches import Other, matches_of
 from rotrecon.photometry.outlines import CarriedOutline, outline_in
-from rotrecon.photometry.splines import LUMA, SCIPY, spline_of
-from rotrecon.photometry.visible import seen_too, shown
-from rotrecon.rays.correlation import Likeness, likeness_of
-from rotrecon.rays.fitting import TUKEY, Measurement, Outline, cauchy, refine, robust_scale, tukey
+from rotrecon.photometry.sureness import covariance_of
+from rotrecon.photometry.visible import shown
+from rotrecon.rays.fitting import Loss, Measurement, cauchy, refine, tukey
+from rotrecon.rays.hypotheses import Scene
 from rotrecon.rays.limbs import seen_outline
 from rotrecon.rays.patch import Patch
-from rotrecon.rays.ray_fit import RayFit, predicted, spread
-from rotrecon.rays.surfaces import Ball, Lateral, Surface
+from rotrecon.rays.ray_fit import RayFit, predicted
+from rotrecon.rays.surfaces import Ball, Surface
+from rotrecon.turned.turned import Turned
 
-SMOOTHING_PX = 0.7
-MOST_PIXELS = 16000
-FEWEST_PIXELS = 200
-ROUNDS, ITERATIONS = 3, 8
-USE = {"photo": True, "outline": True}
-
-
-@dataclass(frozen=True, eq=False)
-class Seen:
-    pixels: Indices
-    agreement: Agreement
+LOSSES: tuple[Loss, ...] = (cauchy, tukey, tukey)
+"""Of the rounds: each chooses its pixels anew."""
+ITERATIONS = 8
+SOUGHT_AGAIN_PX = 1.0
+"""A surface whose outline moved by more may have been given the wrong edges."""
+FARTHEST_PX = 4.0
+"""Pictures are matched to a fraction of a pixel; a surface that moves by more has lost its way."""
 
 
-def agreements(surface, patch, fit, views, carriers, smoothing=SMOOTHING_PX):
-    mask = shown(surface, patch, fit.sigma)
-    grey = SCIPY.gaussian_filter(patch.picture().astype(np.float64) @ LUMA, smoothing).ravel() if smoothing else (patch.picture().astype(np.float64) @ LUMA).ravel()
-    found = []
-    for view, carrier in zip(views, carriers):
-        pixels = np.flatnonzero(mask).astype(np.int32)
-        rays = patch.rays[:, pixels]
-        pixels = pixels[seen_too(surface, rays, carrier)]
-        rays = patch.rays[:, pixels]
-        place, _ = carrier.carried(rays, surface.trace(rays).depth_m)
-        if len(pixels) < FEWEST_PIXELS:
-            continue
-        spline = spline_of(view.image, np.nanmin(place, axis=1), np.nanmax(place, axis=1), smoothing)
-        pixels = pixels[spline.within(place)]
-        pixels = spread(pixels, MOST_PIXELS)
-        found.append(Seen(pixels, Agreement(patch.rays[:, pixels], grey[pixels], spline, carrier)))
-    return found
+def refined(fit: RayFit, scene: Scene, frame: Frame) -> RayFit | None:
+    """A fit to matched depth, refined against the views of the frame that the depth comes from.
 
-
-def refined(fit: RayFit, patch: Patch, views, T_base_camera, segments, length_m):
-    surface = fit.surface
-    carriers = [carrier_of(view, T_base_camera) for view in views]
-    units = surface.units(length_m)
-    for round_ in range(ROUNDS):
-        seen = agreements(surface, patch, fit, views, carriers) if USE["photo"] else []
-        outlines = []
-        if USE["outline"] and not isinstance(surface, Ball):
-            own = seen_outline(surface, patch, segments, length_m)
-            if own.edges is not None:
-                outlines.append(own.edges)
-            points = (patch.rays * surface.trace(patch.rays).depth_m)[:, patch.kept]
-            h = np.percentile(surface.heights(points.T), [1, 99])
-            for view, carrier in zip(views, carriers):
-                o = outline_in(view, carrier, surface, patch, h)
-                if o.edges is not None:
-                    outlines.append(CarriedOutline(o.edges, carrier))
-        weighting = []
-        for s in seen:
-            r = s.agreement.predict(surface).residual
-            sigma = max(robust_scale(r), LEAST_SIGMA)
-            image = np.full(patch.shape, np.nan)
-            image.ravel()[s.pixels] = np.where(np.abs(r) < 3 * sigma, r, np.nan)
-            like = likeness_of(image)
-            weighting.append((sigma, like.independent_share))
-        measurements = [*(s.agreement for s in seen), *outlines]
-        weighting += [(1.0, 1.0)] * len(outlines)
+    None for a frame of fewer than two views, where neither texture nor outlines hold the surface, and for a general
+    surface of revolution.
+    """
+    if len(frame.views) < 2 or isinstance(fit.surface, Turned):
+        return None
+    others = tuple(Other(view, carrier_of(view, frame.T_base_camera)) for view in frame.views[1:])
+    patch, units = scene.patch, fit.surface.units(scene.length_m)
+    surface = sought = fit.surface
+    edges = edges_of(surface, scene, others)
+    matches = ()
+    for loss in LOSSES:
+        if _moved_px(sought, surface, patch, others) > SOUGHT_AGAIN_PX:
+            sought, edges = surface, edges_of(surface, scene, others)
+        matches = matches_of(surface, patch, shown(surface, patch, fit.sigma), others)
+        measurements: list[Measurement] = [*(match.agreement for match in matches), *edges]
         if not measurements:
             return None
-        res = refine(surface, measurements, weighting, cauchy if round_ == 0 else tukey, fit.free, units, ITERATIONS)
-        surface = res.surface
-    cov = np.zeros_like(res.information); k = np.ix_(fit.free, fit.free)
-    cov[k] = np.linalg.pinv(res.information[k], hermitian=True)
-    return surface, cov, seen, outlines, weighting
+        weighting = [*(match.weighting for match in matches), *((1.0, 1.0) for _ in edges)]
+        surface = refine(surface, measurements, weighting, loss, fit.free, units, ITERATIONS).surface
+    if not _moved_px(fit.surface, surface, patch, others) < FARTHEST_PX:
+        return None
+    covariance = covariance_of(surface, matches, edges, fit.free, patch.shape)
+    residual = predicted(patch, fit.pixels, surface, fit.sight).residual
+    return replace(fit, surface=surface, covariance=covariance, residual=residual)
+
+
+def edges_of(surface: Surface, scene: Scene, others: tuple[Other, ...]) -> list[Measurement]:
+    """The outline in all pictures; none of a ball, whose edge, as bright as what is behind it, is seen too far inside."""
+    if isinstance(surface, Ball):
+        return []
+    own = seen_outline(surface, scene.patch, scene.segments, scene.length_m).edges
+    points = (scene.patch.rays * surface.trace(scene.patch.rays).depth_m).T[scene.patch.kept]
+    low, high = np.percentile(surface.heights(points), [1, 99])
+    edges: list[Measurement] = [] if own is None else [own]
+    for other in others:
+        seen = outline_in(other.view, other.carrier, surface, scene.patch, (float(low), float(high))).edges
+        if seen is not None:
+            edges.append(CarriedOutline(seen, other.carrier))
+    return edges
+
+
+def _moved_px(before: Surface, after: Surface, patch: Patch, others: tuple[Other, ...]) -> float:
+    """How far the points of a surface moved in the other pictures, at most, in the median of the object's pixels."""
+    rays = patch.rays[:, patch.kept]
+    first, second = (surface.trace(rays).depth_m for surface in (before, after))
+    moved: list[Floats] = [
+        np.linalg.norm(other.carrier.carried(rays, second)[0] - other.carrier.carried(rays, first)[0], axis=0)
+        for other in others
+    ]
+    return float(max(np.nanmedian(one) for one in moved))

@@ -78,10 +78,13 @@ def spline_of(image: Bytes, low_px: Floats, high_px: Floats, smoothing_px: float
     size = np.array(image.shape[1::-1])
     low = np.clip(np.floor(low_px - border), 0, size - 1).astype(np.int64)
     high = np.clip(np.ceil(high_px + border), 0, size - 1).astype(np.int64) + 1
-    grey = image[low[1] : high[1], low[0] : high[0]].astype(np.float64) @ LUMA
-    if smoothing_px > 0:
-        grey = SCIPY.gaussian_filter(grey, smoothing_px)
+    grey = smoothed(image[low[1] : high[1], low[0] : high[0]], smoothing_px)
     return Spline(SCIPY.spline_filter(grey), low.astype(np.float64))
+
+
+def smoothed(image: Bytes, smoothing_px: float) -> Floats:
+    """Grey values (h, w) of a picture (h, w, 3) after a low pass of a standard deviation."""
+    return SCIPY.gaussian_filter(image.astype(np.float64) @ LUMA, smoothing_px)
 
 
 def _weights(part: Floats) -> tuple[Floats, Floats]:
