@@ -11,6 +11,7 @@ from rotrecon.frame import StereoNoise
 from rotrecon.intervals import radius_sigma
 from rotrecon.judgement import doubts_of, failure_of, too_little
 from rotrecon.outcome import Evidence, FailureReason, Fit, FitFailure, PartOf, Range
+from rotrecon.photometry.refinement import refined
 from rotrecon.primitives import Primitive
 from rotrecon.rays.hypotheses import Held, Scene, scene_of
 from rotrecon.rays.patch import Patch, patch_of
@@ -90,6 +91,7 @@ def _find(scene: Scene, held: Held, segmented: Reconstruction) -> _Found | FitFa
             f"the depths speak for a {ranked[0].shape} rather than a {kind}; choose that, or let the program decide"
         )
         return FitFailure(FailureReason.NOT_THIS_KIND, advice)
+    ranked, chosen = _refined(ranked, chosen, scene, segmented)
     found = _followed_along(ranked, chosen, scene, settings)
     if kind is not None or not isinstance(chosen.surface, Lateral) or not _is_part_only(found, chosen, scene, settings):
         return found
@@ -102,6 +104,18 @@ def _find(scene: Scene, held: Held, segmented: Reconstruction) -> _Found | FitFa
     if isinstance(better, FitFailure) or better.soundness.inlier_share < settings.turned_inlier_share:
         return found
     return better
+
+
+def _refined(
+    ranked: tuple[Ranked, ...], chosen: Ranked, scene: Scene, segmented: Reconstruction
+) -> tuple[tuple[Ranked, ...], Ranked]:
+    """The shapes with the chosen one as the pictures have it, where the frame comes from several."""
+    assert chosen.fit is not None
+    fit = refined(chosen.fit, scene, segmented.frame)
+    if fit is None:
+        return ranked, chosen
+    better = replace(chosen, surface=fit.surface, fit=fit)
+    return tuple(better if one is chosen else one for one in ranked), better
 
 
 def _is_part_only(found: _Found | FitFailure, chosen: Ranked, scene: Scene, settings: Settings) -> bool:
