@@ -17,6 +17,18 @@ LEAST_SIGMA = 1e-6
 
 
 @dataclass(frozen=True, eq=False)
+class Change:
+    """Residuals of pixels, and how each changes with the pixel's depth."""
+
+    residual: Floats
+    """(N,) grey values."""
+    by_depth: Floats
+    """(N,) of the predicted, grey values a metre."""
+    px_by_depth: Floats
+    """(N,) shift in the other picture, px a metre."""
+
+
+@dataclass(frozen=True, eq=False)
 class Agreement:
     """Grey values of the reference picture, which the other one has where the surface carries them.
 
@@ -41,13 +53,24 @@ class Agreement:
     def predict(self, surface: Surface) -> Prediction:
         """Residuals and derivatives in grey values."""
         trace = surface.trace(self.rays)
-        place_px, by_depth = self.carrier.carried(self.rays, trace.depth_m)
-        seen = self.other.at(place_px)
-        columns = trace.columns * (seen.by_u * by_depth[0] + seen.by_v * by_depth[1])
-        return self._balanced(seen.grey, np.nan_to_num(columns))
+        seen, by_depth, _ = self._seen(trace.depth_m)
+        residual, weighted, inverse, terms = self._balanced(seen)
+        columns = np.nan_to_num(trace.columns * by_depth)
+        return Prediction(residual, columns - (columns @ weighted.T) @ inverse @ terms)
 
-    def _balanced(self, seen: Floats, columns: Floats) -> Prediction:
-        """Prediction with gain and offset taken out."""
+    def along_rays(self, surface: Surface) -> Change:
+        """Residuals, and how they change with each pixel's own depth."""
+        seen, by_depth, px_by_depth = self._seen(surface.trace(self.rays).depth_m)
+        return Change(self._balanced(seen)[0], np.nan_to_num(by_depth), np.nan_to_num(px_by_depth))
+
+    def _seen(self, depth_m: Floats) -> tuple[Floats, Floats, Floats]:
+        """What the other picture shows, and its change and the place's by depth; all (N,)."""
+        place_px, by_depth = self.carrier.carried(self.rays, depth_m)
+        seen = self.other.at(place_px)
+        return seen.grey, seen.by_u * by_depth[0] + seen.by_v * by_depth[1], np.hypot(by_depth[0], by_depth[1])
+
+    def _balanced(self, seen: Floats) -> tuple[Floats, Floats, Floats, Floats]:
+        """Residual (N,) with gain and offset taken out; their weighted terms (2, N), covariance (2, 2) and terms."""
         terms = np.stack([self.grey - self.grey.mean(), np.ones(len(self.grey))])
         weight = np.ones(len(self.grey))
         weighted, inverse, residual = terms, np.empty((2, 2)), seen
@@ -56,7 +79,7 @@ class Agreement:
             inverse = np.linalg.pinv(weighted @ terms.T, hermitian=True)
             residual = (inverse @ (weighted @ seen)) @ terms - seen
             weight = tukey(residual / max(robust_scale(residual), LEAST_SIGMA))[1]
-        return Prediction(residual, columns - (columns @ weighted.T) @ inverse @ terms)
+        return residual, weighted, inverse, terms
 
     def chosen(self, index: Indices | Bools) -> "Agreement":
         """Some of the pixels."""

@@ -1,4 +1,4 @@
-"""The outline of a surface in the picture of another camera, tied to the surface in the reference camera's coordinates."""
+"""The outline of a surface in the picture of another camera, tied to it in the reference camera's coordinates."""
 
 from dataclasses import dataclass, replace
 

@@ -1,21 +1,22 @@
 """A fitted surface refined until the pictures of several cameras agree over it, outlines in all of them included."""
 
-from dataclasses import replace
+from dataclasses import dataclass, replace
 
 import numpy as np
 
-from rotrecon.arrays import Floats
+from rotrecon.arrays import Floats, freeze
 from rotrecon.frame import Frame
 from rotrecon.photometry.carrying import carrier_of
-from rotrecon.photometry.matches import Other, matches_of
+from rotrecon.photometry.matches import FEWEST_PIXELS, Other, matches_of
 from rotrecon.photometry.outlines import CarriedOutline, outline_in
+from rotrecon.photometry.sharpening import sharpened
 from rotrecon.photometry.sureness import covariance_of
 from rotrecon.photometry.visible import shown
 from rotrecon.rays.fitting import Loss, Measurement, cauchy, refine, tukey
 from rotrecon.rays.hypotheses import Scene
 from rotrecon.rays.limbs import seen_outline
 from rotrecon.rays.patch import Patch
-from rotrecon.rays.ray_fit import RayFit, predicted
+from rotrecon.rays.ray_fit import RayFit, Sight, predicted
 from rotrecon.rays.surfaces import Ball, Surface
 from rotrecon.turned.turned import Turned
 
@@ -24,11 +25,26 @@ LOSSES: tuple[Loss, ...] = (cauchy, tukey, tukey)
 ITERATIONS = 8
 SOUGHT_AGAIN_PX = 1.0
 """A surface whose outline moved by more may have been given the wrong edges."""
+SHARP_SHARE = 0.3
+"""Of the pixels that a fit rests on, how many must have a depth from the pictures to take their place."""
 FARTHEST_PX = 4.0
 """Pictures are matched to a fraction of a pixel; a surface that moves by more has lost its way."""
 
 
-def refined(fit: RayFit, scene: Scene, frame: Frame) -> RayFit | None:
+@dataclass(frozen=True, eq=False)
+class Refinement:
+    """A fit as the pictures have it."""
+
+    fit: RayFit
+    """Its pixels are those whose depth the pictures tell, if there are enough."""
+    depth_m: Floats
+    """(N,) of the patch: what the pictures tell where they do, what was matched elsewhere."""
+
+    def __post_init__(self) -> None:
+        freeze(self)
+
+
+def refined(fit: RayFit, scene: Scene, frame: Frame) -> Refinement | None:
     """A fit to matched depth, refined against the views of the frame that the depth comes from.
 
     None for a frame of fewer than two views, where neither texture nor outlines hold the surface, and for a general
@@ -53,12 +69,17 @@ def refined(fit: RayFit, scene: Scene, frame: Frame) -> RayFit | None:
     if not _moved_px(fit.surface, surface, patch, others) < FARTHEST_PX:
         return None
     covariance = covariance_of(surface, matches, edges, fit.free, patch.shape)
-    residual = predicted(patch, fit.pixels, surface, fit.sight).residual
-    return replace(fit, surface=surface, covariance=covariance, residual=residual)
+    depth_m, known = sharpened(surface, patch, shown(surface, patch, fit.sigma), matches)
+    pixels, sight = fit.pixels, fit.sight
+    if known.sum() > max(SHARP_SHARE * len(pixels), FEWEST_PIXELS):
+        pixels, sight = np.flatnonzero(known).astype(np.int32), Sight()
+    residual = predicted(replace(patch, depth_m=depth_m), pixels, surface, sight).residual
+    better = replace(fit, surface=surface, covariance=covariance, pixels=pixels, sight=sight, residual=residual)
+    return Refinement(better, depth_m)
 
 
 def edges_of(surface: Surface, scene: Scene, others: tuple[Other, ...]) -> list[Measurement]:
-    """The outline in all pictures; none of a ball, whose edge, as bright as what is behind it, is seen too far inside."""
+    """The outline in all pictures; none of a ball, whose edge is seen too far inside where it is the brighter side."""
     if isinstance(surface, Ball):
         return []
     own = seen_outline(surface, scene.patch, scene.segments, scene.length_m).edges
