@@ -72,7 +72,8 @@ def refined(fit: RayFit, scene: Scene, frame: Frame) -> Refinement | None:
     depth_m, known = sharpened(surface, patch, shown(surface, patch, fit.sigma), matches)
     pixels, sight = fit.pixels, fit.sight
     if known.sum() > max(SHARP_SHARE * len(pixels), FEWEST_PIXELS):
-        pixels, sight = np.flatnonzero(known).astype(np.int32), Sight()
+        pixels = np.flatnonzero(known).astype(np.int32)
+        sight = Sight(guard=float(np.percentile(surface.off_middle(patch.rays[:, pixels]), 95)))
     residual = predicted(replace(patch, depth_m=depth_m), pixels, surface, sight).residual
     better = replace(fit, surface=surface, covariance=covariance, pixels=pixels, sight=sight, residual=residual)
     return Refinement(better, depth_m)
