@@ -19,8 +19,6 @@ from rotrecon.rays.surfaces import Surface
 SMOOTHING_PX = 0.7
 """Standard deviation of the low pass on both pictures: without it noise passes for texture where there is little, and
 intervals are half as wide as they should be; with twice as much the limbs reach the inner pixels (both measured)."""
-MOST_PIXELS = 16000
-"""Of all views together: more would only repeat them."""
 FEWEST_PIXELS = 100
 """Fewer have no texture to speak of."""
 
@@ -53,10 +51,15 @@ class Match:
         return self.sigma, self.likeness.independent_share
 
 
-def matches_of(surface: Surface, patch: Patch, pixels: Bools, others: tuple[Other, ...]) -> tuple[Match, ...]:
-    """Those of some pixels (N,) of a patch that other views see too, one match a view; none for too few."""
+def matches_of(
+    surface: Surface, patch: Patch, pixels: Bools, others: tuple[Other, ...], most: int
+) -> tuple[Match, ...]:
+    """Those of some pixels (N,) of a patch that other views see too, one match a view; none for too few.
+
+    At most `most` pixels are compared, of all views together.
+    """
     grey = smoothed(patch.picture(), SMOOTHING_PX).ravel()
-    found = (_match(surface, patch, grey, pixels, other, MOST_PIXELS // len(others)) for other in others)
+    found = (_match(surface, patch, grey, pixels, other, most // len(others)) for other in others)
     return tuple(match for match in found if match is not None)
 
 

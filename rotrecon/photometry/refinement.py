@@ -16,13 +16,15 @@ from rotrecon.rays.fitting import Loss, Measurement, cauchy, refine, tukey
 from rotrecon.rays.hypotheses import Scene
 from rotrecon.rays.limbs import seen_outline
 from rotrecon.rays.patch import Patch
-from rotrecon.rays.ray_fit import RayFit, Sight, predicted
+from rotrecon.rays.ray_fit import RayFit, Sight, predicted, spread
 from rotrecon.rays.surfaces import Ball, Surface
 from rotrecon.turned.turned import Turned
 
-LOSSES: tuple[Loss, ...] = (cauchy, tukey, tukey)
-"""Of the rounds: each chooses its pixels anew."""
+ROUNDS: tuple[tuple[Loss, int], ...] = ((cauchy, 3000), (tukey, 12000))
+"""Loss and most pixels, of all views together: some of them are enough to find the way. Each chooses them anew."""
 ITERATIONS = 8
+MOVED_PIXELS = 500
+"""Enough to tell how far a surface moved."""
 SOUGHT_AGAIN_PX = 1.0
 """A surface whose outline moved by more may have been given the wrong edges."""
 SHARP_SHARE = 0.3
@@ -57,10 +59,10 @@ def refined(fit: RayFit, scene: Scene, frame: Frame) -> Refinement | None:
     surface = sought = fit.surface
     edges = edges_of(surface, scene, others)
     matches = ()
-    for loss in LOSSES:
+    for loss, most in ROUNDS:
         if _moved_px(sought, surface, patch, others) > SOUGHT_AGAIN_PX:
             sought, edges = surface, edges_of(surface, scene, others)
-        matches = matches_of(surface, patch, shown(surface, patch, fit.sigma), others)
+        matches = matches_of(surface, patch, shown(surface, patch, fit.sigma), others, most)
         measurements: list[Measurement] = [*(match.agreement for match in matches), *edges]
         if not measurements:
             return None
@@ -96,7 +98,7 @@ def edges_of(surface: Surface, scene: Scene, others: tuple[Other, ...]) -> list[
 
 def _moved_px(before: Surface, after: Surface, patch: Patch, others: tuple[Other, ...]) -> float:
     """How far the points of a surface moved in the other pictures, at most, in the median of the object's pixels."""
-    rays = patch.rays[:, patch.kept]
+    rays = patch.rays[:, spread(np.flatnonzero(patch.kept).astype(np.int32), MOVED_PIXELS)]
     first, second = (surface.trace(rays).depth_m for surface in (before, after))
     moved: list[Floats] = [
         np.linalg.norm(other.carrier.carried(rays, second)[0] - other.carrier.carried(rays, first)[0], axis=0)

@@ -2,6 +2,7 @@
 
 import cv2
 import numpy as np
+from numpy.typing import NDArray
 
 from rotrecon.arrays import Bools, Floats
 from rotrecon.photometry.carrying import Carrier
@@ -20,14 +21,18 @@ ROUND_ABOUT_PX = 9
 
 def shown(surface: Surface, patch: Patch, sigma: float) -> Bools:
     """(N,) pixels of a patch that show a surface of which matched depth agrees with a sigma, clear of its outline."""
-    trace = surface.trace(patch.rays)
-    points = patch.rays * trace.depth_m
-    clear = patch.drawn & trace.hit & (trace.depth_m > 0) & _faces(surface, points, np.zeros(3))
-    clear &= _inside(surface, patch.rays, patch.focal_px)
-    off_m = np.abs(patch.depth_m - trace.depth_m)
-    near = off_m < np.maximum(AGREES_SIGMA * sigma * patch.noise.sigma_m(trace.depth_m), AGREES_RADIUS * surface.size_m)
-    known = np.isfinite(patch.depth_m)
-    return clear & (_summed(near, patch.shape) >= 0.5 * _summed(known, patch.shape))
+    drawn = np.flatnonzero(patch.drawn)
+    rays, seen_m = patch.rays[:, drawn], patch.depth_m[drawn]
+    trace = surface.trace(rays)
+    depth_m = trace.depth_m
+    clear = trace.hit & (depth_m > 0) & _faces(surface, rays * depth_m, np.zeros(3))
+    clear &= _inside(surface, rays, patch.focal_px)
+    limit_m = np.maximum(AGREES_SIGMA * sigma * patch.noise.sigma_m(depth_m), AGREES_RADIUS * surface.size_m)
+    known, near = np.isfinite(seen_m), np.abs(seen_m - depth_m) < limit_m
+    agrees = _summed(near, drawn, patch.shape) >= 0.5 * _summed(known, drawn, patch.shape)
+    result = np.zeros(len(patch.drawn), dtype=np.bool_)
+    result[drawn] = clear & agrees
+    return result
 
 
 def seen_too(surface: Surface, rays: Rays, carrier: Carrier) -> Bools:
@@ -61,8 +66,9 @@ def _inside(surface: Surface, rays: Rays, focal_px: float) -> Bools:
     return tangency.gap_m * focal_px < -GUARD_PX * np.abs(tangency.depth_m)
 
 
-def _summed(which: Bools, shape: tuple[int, int]) -> Floats:
-    """Numbers (N,) of pixels in the window round each."""
-    image = which.reshape(shape).astype(np.float32)
+def _summed(which: Bools, pixels: NDArray[np.intp], shape: tuple[int, int]) -> Floats:
+    """Numbers (n,) of pixels (n,) of which something holds, in the window round each of them."""
+    image = np.zeros(shape, dtype=np.float32)
+    image.ravel()[pixels] = which
     side = (ROUND_ABOUT_PX, ROUND_ABOUT_PX)
-    return np.asarray(cv2.boxFilter(image, -1, side, normalize=False, borderType=cv2.BORDER_CONSTANT)).ravel()
+    return np.asarray(cv2.boxFilter(image, -1, side, normalize=False, borderType=cv2.BORDER_CONSTANT)).ravel()[pixels]
