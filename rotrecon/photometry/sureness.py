@@ -9,6 +9,11 @@ from rotrecon.photometry.matches import Match
 from rotrecon.rays.fitting import TUKEY, Measurement, tukey
 from rotrecon.rays.surfaces import Surface
 
+SYSTEMATIC_PX = 0.008
+"""What splines, aliasing and a lens shift one picture against the other by, alike over a part of the object."""
+PARTS = 4
+"""Parts, along each side of the patch, over which that is alike."""
+
 
 def covariance_of(
     surface: Surface, matches: tuple[Match, ...], edges: Sequence[Measurement], free: Bools, shape: tuple[int, int]
@@ -17,7 +22,7 @@ def covariance_of(
 
     H is the information that all measurements were weighted with. M is the variance of its gradient: J C J' of the
     pixels, C being the autocorrelation of their residuals; views share the reference picture's noise, so that their
-    residuals are alike too. Edges, whose share is known, have their information as variance. `shape` is the patch's.
+    residuals are alike too; and of a systematic shift of parts of the picture. Edges, whose share is known, have their information as variance. `shape` is the patch's.
     """
     count = len(free)
     information, variance = np.zeros((count, count)), np.zeros((count, count))
@@ -33,6 +38,8 @@ def covariance_of(
         information += share * response * (own @ own.T)
         scaled.append(_placed(weight * residual, match, shape))
         columns.append(np.stack([_placed(share * column, match, shape) for column in own]))
+        shifts = SYSTEMATIC_PX * share * _by_part(own * _texture(match, surface) / match.sigma, match, shape)
+        variance += shifts @ shifts.T
     for first, pull in enumerate(scaled):
         smeared = np.stack([matches[first].likeness.smeared(column) for column in columns[first]])
         smeared = smeared.reshape(count, -1)
@@ -50,6 +57,19 @@ def covariance_of(
     inverse = np.linalg.pinv(information[kept], hermitian=True)
     covariance[kept] = inverse @ ((variance + variance.T) / 2)[kept] @ inverse
     return covariance
+
+
+def _texture(match: Match, surface: Surface) -> Floats:
+    """Change (N,) of the predicted grey values with a shift of the other picture, a pixel."""
+    change = match.agreement.along_rays(surface)
+    return change.by_depth / np.maximum(change.px_by_depth, 1e-12)
+
+
+def _by_part(columns: Floats, match: Match, shape: tuple[int, int]) -> Floats:
+    """Sums (k, P) over the parts of the patch of columns (k, N)."""
+    row, column = np.divmod(match.pixels, shape[1])
+    part = row * PARTS // shape[0] * PARTS + column * PARTS // shape[1]
+    return np.stack([np.bincount(part, one, PARTS**2) for one in columns])
 
 
 def _placed(values: Floats, match: Match, shape: tuple[int, int]) -> Floats:
