@@ -11,7 +11,7 @@ from rotrecon.frame import Frame, StereoNoise
 from rotrecon.intervals import radius_sigma
 from rotrecon.judgement import doubts_of, failure_of, too_little
 from rotrecon.outcome import Evidence, FailureReason, Fit, FitFailure, PartOf, Range
-from rotrecon.photometry.refinement import refined
+from rotrecon.photometry.refinement import others_of, refined, sought, weighed
 from rotrecon.primitives import Primitive
 from rotrecon.rays.hypotheses import Held, Scene, scene_of
 from rotrecon.rays.patch import Patch, patch_of
@@ -93,7 +93,7 @@ def _find(scene: Scene, held: Held, segmented: Reconstruction) -> _Found | FitFa
             f"the depths speak for a {ranked[0].shape} rather than a {kind}; choose that, or let the program decide"
         )
         return FitFailure(FailureReason.NOT_THIS_KIND, advice)
-    ranked, chosen, scene = _refined(ranked, chosen, scene, segmented)
+    ranked, chosen, scene = _refined(ranked, chosen, (scene, held), segmented)
     found = _followed_along(ranked, chosen, scene, settings)
     if kind is not None or not isinstance(chosen.surface, Lateral) or not _is_part_only(found, chosen, scene, settings):
         return found
@@ -109,16 +109,28 @@ def _find(scene: Scene, held: Held, segmented: Reconstruction) -> _Found | FitFa
 
 
 def _refined(
-    ranked: tuple[Ranked, ...], chosen: Ranked, scene: Scene, segmented: Reconstruction
+    ranked: tuple[Ranked, ...], chosen: Ranked, of: tuple[Scene, Held], segmented: Reconstruction
 ) -> tuple[tuple[Ranked, ...], Ranked, Scene]:
-    """The shapes, the chosen one and the depths as the pictures have them, where the frame comes from several."""
+    """The shapes, the chosen one and the depths as the pictures have them, where the frame comes from several.
+
+    Where the pictures do not bear out what was matched, shapes are sought by them and the drawing alone.
+    """
+    scene, held = of
+    others = others_of(segmented.frame)
     assert chosen.fit is not None
-    refinement = refined(chosen.fit, scene, segmented.frame)
-    if refinement is None:
+    first = refined(chosen, scene, others)
+    if first is None or not first.trusted:
+        found = weighed((*((first,) if first else ()), *(sought(scene, held, chosen.fit, others) if others else ())))
+        best = (
+            chosen_of(tuple(one.shape for one in found), segmented.drawing.kind, segmented.settings) if found else None
+        )
+        if best is not None:
+            ranked, chosen = tuple(one.shape for one in found), best
+            first = next(one for one in found if one.shape is best)
+    if first is None:
         return ranked, chosen, scene
-    better = replace(chosen, surface=refinement.fit.surface, fit=refinement.fit)
-    sharper = replace(scene, patch=replace(scene.patch, depth_m=refinement.depth_m))
-    return tuple(better if one is chosen else one for one in ranked), better, sharper
+    sharper = replace(scene, patch=replace(scene.patch, depth_m=first.depth_m))
+    return tuple(first.shape if one is chosen else one for one in ranked), first.shape, sharper
 
 
 def _is_part_only(found: _Found | FitFailure, chosen: Ranked, scene: Scene, settings: Settings) -> bool:

@@ -1,4 +1,4 @@
-"""A fitted surface refined until the pictures of several cameras agree over it, outlines in all of them included."""
+"""A shape fitted to matched depth, refined against the pictures that the depth comes from."""
 
 from dataclasses import dataclass, replace
 
@@ -7,101 +7,129 @@ import numpy as np
 from rotrecon.arrays import Floats, freeze
 from rotrecon.frame import Frame
 from rotrecon.photometry.carrying import carrier_of
-from rotrecon.photometry.matches import FEWEST_PIXELS, Other, matches_of
-from rotrecon.photometry.outlines import CarriedOutline, outline_in
+from rotrecon.photometry.climbing import Climbed, climb, moved_px
+from rotrecon.photometry.drawn import drawn, half_width_px
+from rotrecon.photometry.matches import FEWEST_PIXELS, Other
+from rotrecon.photometry.scanning import TILTS_RAD, scanned
 from rotrecon.photometry.sharpening import sharpened
 from rotrecon.photometry.sureness import covariance_of
-from rotrecon.photometry.visible import shown
-from rotrecon.rays.fitting import Loss, Measurement, cauchy, refine, tukey
-from rotrecon.rays.hypotheses import Scene
-from rotrecon.rays.limbs import seen_outline
-from rotrecon.rays.patch import Patch
-from rotrecon.rays.ray_fit import RayFit, Sight, predicted, spread
-from rotrecon.rays.surfaces import Ball, Surface
+from rotrecon.photometry.visible import clear_of
+from rotrecon.rays.hypotheses import Held, Scene
+from rotrecon.rays.ray_fit import RayFit, Sight, predicted
+from rotrecon.rays.robust import PARAMETERS, Ranked
+from rotrecon.sections.radii import Shape
 from rotrecon.turned.turned import Turned
 
-ROUNDS: tuple[tuple[Loss, int], ...] = ((cauchy, 3000), (tukey, 12000))
-"""Loss and most pixels, of all views together: some of them are enough to find the way. Each chooses them anew."""
-ITERATIONS = 8
-MOVED_PIXELS = 500
-"""Enough to tell how far a surface moved."""
-SOUGHT_AGAIN_PX = 1.0
-"""A surface whose outline moved by more may have been given the wrong edges."""
 SHARP_SHARE = 0.3
 """Of the pixels that a fit rests on, how many must have a depth from the pictures to take their place."""
 FARTHEST_PX = 4.0
 """Pictures are matched to a fraction of a pixel; a surface that moves by more has lost its way."""
+AGREEING_SHARE = 0.75
+"""Of the pixels, how many must agree in brightness for a surface to be where it is said to be."""
+UNSURE = 0.1
+"""Standard error of the radius over the radius of a fit that is no start."""
+DRAWN_SHARE, DRAWN_PX = 0.12, 2.5
+"""Half widths may be off the drawing's by this share or so many px before other starts are tried."""
+LEAST_CORRELATION = 0.5
+"""Of two pictures over a surface that is where they agree best; less is none that they show."""
 
 
 @dataclass(frozen=True, eq=False)
 class Refinement:
-    """A fit as the pictures have it."""
+    """A shape as the pictures have it."""
 
-    fit: RayFit
-    """Its pixels are those whose depth the pictures tell, if there are enough."""
+    shape: Ranked
+    """Its fit's pixels are those whose depth the pictures tell, if there are enough."""
     depth_m: Floats
     """(N,) of the patch: what the pictures tell where they do, what was matched elsewhere."""
+    climbed: Climbed
+    trusted: bool
+    """Whether nothing speaks for another start."""
 
     def __post_init__(self) -> None:
         freeze(self)
 
 
-def refined(fit: RayFit, scene: Scene, frame: Frame) -> Refinement | None:
-    """A fit to matched depth, refined against the views of the frame that the depth comes from.
+def others_of(frame: Frame) -> tuple[Other, ...]:
+    """All views of a frame but the reference."""
+    return tuple(Other(view, carrier_of(view, frame.T_base_camera)) for view in frame.views[1:])
 
-    None for a frame of fewer than two views, where neither texture nor outlines hold the surface, and for a general
-    surface of revolution.
+
+def refined(one: Ranked, scene: Scene, others: tuple[Other, ...]) -> Refinement | None:
+    """A shape fitted to matched depth, refined against other views.
+
+    None where neither texture nor outlines hold the surface, and for a general surface of revolution.
     """
-    if len(frame.views) < 2 or isinstance(fit.surface, Turned):
+    fit = one.fit
+    if not others or fit is None or isinstance(fit.surface, Turned):
         return None
-    others = tuple(Other(view, carrier_of(view, frame.T_base_camera)) for view in frame.views[1:])
-    patch, units = scene.patch, fit.surface.units(scene.length_m)
-    surface = sought = fit.surface
-    edges = edges_of(surface, scene, others)
-    matches = ()
-    for loss, most in ROUNDS:
-        if _moved_px(sought, surface, patch, others) > SOUGHT_AGAIN_PX:
-            sought, edges = surface, edges_of(surface, scene, others)
-        matches = matches_of(surface, patch, shown(surface, patch, fit.sigma), others, most)
-        measurements: list[Measurement] = [*(match.agreement for match in matches), *edges]
-        if not measurements:
-            return None
-        weighting = [*(match.weighting for match in matches), *((1.0, 1.0) for _ in edges)]
-        surface = refine(surface, measurements, weighting, loss, fit.free, units, ITERATIONS).surface
-    if not _moved_px(fit.surface, surface, patch, others) < FARTHEST_PX:
+    climbed = climb(fit.surface, fit.free, fit.sigma, scene, others)
+    if climbed is None or not moved_px(fit.surface, climbed.surface, scene.patch, others) < FARTHEST_PX:
         return None
-    covariance = covariance_of(surface, matches, edges, fit.free, patch.shape)
-    depth_m, known = sharpened(surface, patch, shown(surface, patch, fit.sigma), matches)
+    refinement = _finished(one, fit, climbed, scene)
+    half_px = climbed.surface.size_m / float(climbed.surface.center_m[2]) * scene.patch.focal_px
+    drawn_px = half_width_px(scene.segments, round_=one.shape == "sphere")
+    as_drawn = abs(half_px - drawn_px) < max(DRAWN_SHARE * drawn_px, DRAWN_PX)
+    sure = float(np.sqrt(fit.covariance.diagonal()[-1 if len(fit.free) == 4 else 4])) < UNSURE * fit.surface.size_m
+    trusted = climbed.agreeing > AGREEING_SHARE and climbed.by_depth > 0.5 and sure and as_drawn
+    return replace(refinement, trusted=trusted)
+
+
+def sought(scene: Scene, held: Held, like: RayFit, others: tuple[Other, ...]) -> tuple[Refinement, ...]:
+    """The shapes that the drawing and the pictures alone speak for, whatever depth was matched.
+
+    `like` is a fit to that depth, which says how rough it is.
+    """
+    known = scene.patch.depth_m[scene.patch.drawn]
+    distance_m = float(np.nanmedian(known)) if np.isfinite(known).any() else 1.0
+    found: list[Refinement] = []
+    shapes: tuple[Shape, ...] = ("cylinder", "cone", "sphere")
+    for shape in shapes:
+        start = held.limiting(drawn(shape, scene.patch, scene.segments, distance_m))
+        tilts = np.zeros(1) if shape == "sphere" or held.direction is not None else TILTS_RAD
+        start, alike = scanned(start, scene.patch, clear_of(start, scene.patch), others[0], tilts)
+        if alike < LEAST_CORRELATION:
+            continue
+        climbed = climb(start, held.free(start), like.sigma, scene, others)
+        if climbed is not None:
+            base = replace(like, free=climbed.free, outlines=())
+            found.append(_finished(Ranked(shape, climbed.surface, base, 0.0), base, climbed, scene))
+    return tuple(found)
+
+
+def weighed(found: tuple[Refinement, ...]) -> tuple[Refinement, ...]:
+    """Refinements with what the pictures have against each, the best first, and no shape twice."""
+    matches = [match for one in found for match in one.climbed.matches]
+    if not matches:
+        return ()
+    clearest = min(matches, key=lambda match: match.sigma)
+    share = clearest.likeness.independent_share
+    count = max(share * len(clearest.pixels), 2.0)
+    costs = [PARAMETERS[_shape(one)] / 2 * np.log(count) - one.climbed.credit(clearest.sigma, share) for one in found]
+    order = np.argsort(costs)
+    best: dict[Shape, Refinement] = {}
+    for number in order:
+        one = found[number]
+        ranked = replace(one.shape, cost=float(costs[number] - costs[order[0]]))
+        best.setdefault(_shape(one), replace(one, shape=ranked))
+    return tuple(best.values())
+
+
+def _shape(one: Refinement) -> Shape:
+    shape = one.shape.shape
+    assert shape != "revolution"
+    return shape
+
+
+def _finished(one: Ranked, fit: RayFit, climbed: Climbed, scene: Scene) -> Refinement:
+    """What is known once a surface has come to its end."""
+    patch, surface = scene.patch, climbed.surface
+    covariance = covariance_of(surface, climbed.matches, climbed.edges, climbed.free, patch.shape)
+    depth_m, known = sharpened(surface, patch, climbed.pixels, climbed.matches)
     pixels, sight = fit.pixels, fit.sight
     if known.sum() > max(SHARP_SHARE * len(pixels), FEWEST_PIXELS):
         pixels = np.flatnonzero(known).astype(np.int32)
         sight = Sight(guard=float(np.percentile(surface.off_middle(patch.rays[:, pixels]), 95)))
     residual = predicted(replace(patch, depth_m=depth_m), pixels, surface, sight).residual
     better = replace(fit, surface=surface, covariance=covariance, pixels=pixels, sight=sight, residual=residual)
-    return Refinement(better, depth_m)
-
-
-def edges_of(surface: Surface, scene: Scene, others: tuple[Other, ...]) -> list[Measurement]:
-    """The outline in all pictures; none of a ball, whose edge is seen too far inside where it is the brighter side."""
-    if isinstance(surface, Ball):
-        return []
-    own = seen_outline(surface, scene.patch, scene.segments, scene.length_m).edges
-    points = (scene.patch.rays * surface.trace(scene.patch.rays).depth_m).T[scene.patch.kept]
-    low, high = np.percentile(surface.heights(points), [1, 99])
-    edges: list[Measurement] = [] if own is None else [own]
-    for other in others:
-        seen = outline_in(other.view, other.carrier, surface, scene.patch, (float(low), float(high))).edges
-        if seen is not None:
-            edges.append(CarriedOutline(seen, other.carrier))
-    return edges
-
-
-def _moved_px(before: Surface, after: Surface, patch: Patch, others: tuple[Other, ...]) -> float:
-    """How far the points of a surface moved in the other pictures, at most, in the median of the object's pixels."""
-    rays = patch.rays[:, spread(np.flatnonzero(patch.kept).astype(np.int32), MOVED_PIXELS)]
-    first, second = (surface.trace(rays).depth_m for surface in (before, after))
-    moved: list[Floats] = [
-        np.linalg.norm(other.carrier.carried(rays, second)[0] - other.carrier.carried(rays, first)[0], axis=0)
-        for other in others
-    ]
-    return float(max(np.nanmedian(one) for one in moved))
+    return Refinement(replace(one, surface=surface, fit=better), depth_m, climbed, trusted=False)

@@ -2,7 +2,6 @@
 
 import cv2
 import numpy as np
-from numpy.typing import NDArray
 
 from rotrecon.arrays import Bools, Floats
 from rotrecon.photometry.carrying import Carrier
@@ -19,20 +18,23 @@ ROUND_ABOUT_PX = 9
 """Side of the window of which half the known depths must agree: they are rough, and full of holes."""
 
 
-def shown(surface: Surface, patch: Patch, sigma: float) -> Bools:
-    """(N,) pixels of a patch that show a surface of which matched depth agrees with a sigma, clear of its outline."""
+def clear_of(surface: Surface, patch: Patch) -> Bools:
+    """(N,) drawn pixels of a patch at which a surface would be seen, clear of its outline."""
     drawn = np.flatnonzero(patch.drawn)
-    rays, seen_m = patch.rays[:, drawn], patch.depth_m[drawn]
+    rays = patch.rays[:, drawn]
     trace = surface.trace(rays)
-    depth_m = trace.depth_m
-    clear = trace.hit & (depth_m > 0) & _faces(surface, rays * depth_m, np.zeros(3))
-    clear &= _inside(surface, rays, patch.focal_px)
-    limit_m = np.maximum(AGREES_SIGMA * sigma * patch.noise.sigma_m(depth_m), AGREES_RADIUS * surface.size_m)
-    known, near = np.isfinite(seen_m), np.abs(seen_m - depth_m) < limit_m
-    agrees = _summed(near, drawn, patch.shape) >= 0.5 * _summed(known, drawn, patch.shape)
+    clear = trace.hit & (trace.depth_m > 0) & _faces(surface, rays * trace.depth_m, np.zeros(3))
     result = np.zeros(len(patch.drawn), dtype=np.bool_)
-    result[drawn] = clear & agrees
+    result[drawn] = clear & _inside(surface, rays, patch.focal_px)
     return result
+
+
+def shown(surface: Surface, patch: Patch, clear: Bools, sigma: float) -> Bools:
+    """Those of some pixels (N,) of a patch round which matched depth of a sigma agrees with a surface."""
+    depth_m = surface.trace(patch.rays).depth_m
+    limit_m = np.maximum(AGREES_SIGMA * sigma * patch.noise.sigma_m(depth_m), AGREES_RADIUS * surface.size_m)
+    known, near = np.isfinite(patch.depth_m), np.abs(patch.depth_m - depth_m) < limit_m
+    return clear & (_summed(near & patch.drawn, patch.shape) >= 0.5 * _summed(known & patch.drawn, patch.shape))
 
 
 def seen_too(surface: Surface, rays: Rays, carrier: Carrier) -> Bools:
@@ -66,9 +68,8 @@ def _inside(surface: Surface, rays: Rays, focal_px: float) -> Bools:
     return tangency.gap_m * focal_px < -GUARD_PX * np.abs(tangency.depth_m)
 
 
-def _summed(which: Bools, pixels: NDArray[np.intp], shape: tuple[int, int]) -> Floats:
-    """Numbers (n,) of pixels (n,) of which something holds, in the window round each of them."""
-    image = np.zeros(shape, dtype=np.float32)
-    image.ravel()[pixels] = which
+def _summed(which: Bools, shape: tuple[int, int]) -> Floats:
+    """Numbers (N,) of pixels of which something holds, in the window round each."""
+    image = which.reshape(shape).astype(np.float32)
     side = (ROUND_ABOUT_PX, ROUND_ABOUT_PX)
-    return np.asarray(cv2.boxFilter(image, -1, side, normalize=False, borderType=cv2.BORDER_CONSTANT)).ravel()[pixels]
+    return np.asarray(cv2.boxFilter(image, -1, side, normalize=False, borderType=cv2.BORDER_CONSTANT)).ravel()
