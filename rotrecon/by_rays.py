@@ -11,12 +11,12 @@ from rotrecon.frame import Frame, StereoNoise
 from rotrecon.intervals import radius_sigma
 from rotrecon.judgement import doubts_of, failure_of, too_little
 from rotrecon.outcome import Evidence, FailureReason, Fit, FitFailure, PartOf, Range
-from rotrecon.photometry.refinement import others_of, refined, sought, weighed
+from rotrecon.photometry.refinement import Refinement, others_of, refined, sought, weighed
 from rotrecon.primitives import Primitive
 from rotrecon.rays.hypotheses import Held, Scene, scene_of
 from rotrecon.rays.patch import Patch, patch_of
 from rotrecon.rays.robust import Ranked, rank
-from rotrecon.rays.starts import robust_line
+from rotrecon.rays.starts import ridge, robust_line
 from rotrecon.rays.surfaces import Lateral
 from rotrecon.recognition import candidates_of, chosen_of, intervals_of, is_possible, solid_of
 from rotrecon.reconstruction import Cut, Reconstruction
@@ -129,8 +129,21 @@ def _refined(
             first = next(one for one in found if one.shape is best)
     if first is None:
         return ranked, chosen, scene
-    sharper = replace(scene, patch=replace(scene.patch, depth_m=first.depth_m))
-    return tuple(first.shape if one is chosen else one for one in ranked), first.shape, sharper
+    ranked = tuple(first.shape if one is chosen else one for one in ranked)
+    return ranked, first.shape, _scene_seen(first, scene, segmented.frame)
+
+
+def _scene_seen(first: Refinement, scene: Scene, frame: Frame) -> Scene:
+    """The scene with the depths of a refinement, and the ridge that they have if matched ones had none."""
+    patch = replace(scene.patch, depth_m=first.depth_m)
+    if first.by_depth:
+        return replace(scene, patch=patch)
+    depth_m = np.full(frame.camera.width * frame.camera.height, np.nan)
+    pixels = np.flatnonzero(first.climbed.pixels).astype(np.int32)
+    depth_m[patch.frame_pixels(pixels)] = first.depth_m[pixels]
+    cells = depth_m[scene.segments.pixel]
+    shown = scene.segments.inside & np.isfinite(cells)
+    return replace(scene, patch=patch, ridge=ridge(frame.camera, cells, scene.segments, shown))
 
 
 def _is_part_only(found: _Found | FitFailure, chosen: Ranked, scene: Scene, settings: Settings) -> bool:

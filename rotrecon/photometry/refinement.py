@@ -14,6 +14,7 @@ from rotrecon.photometry.scanning import TILTS_RAD, scanned
 from rotrecon.photometry.sharpening import sharpened
 from rotrecon.photometry.sureness import covariance_of
 from rotrecon.photometry.visible import clear_of
+from rotrecon.rays.correlation import Likeness
 from rotrecon.rays.hypotheses import Held, Scene
 from rotrecon.rays.ray_fit import RayFit, Sight, predicted
 from rotrecon.rays.robust import PARAMETERS, Ranked
@@ -43,6 +44,10 @@ class Refinement:
     depth_m: Floats
     """(N,) of the patch: what the pictures tell where they do, what was matched elsewhere."""
     climbed: Climbed
+    textured: float
+    """Share of its pixels at which the pictures tell a depth."""
+    by_depth: bool
+    """Whether matched depth was its start."""
     trusted: bool
     """Whether nothing speaks for another start."""
 
@@ -66,7 +71,7 @@ def refined(one: Ranked, scene: Scene, others: tuple[Other, ...]) -> Refinement 
     climbed = climb(fit.surface, fit.free, fit.sigma, scene, others)
     if climbed is None or not moved_px(fit.surface, climbed.surface, scene.patch, others) < FARTHEST_PX:
         return None
-    refinement = _finished(one, fit, climbed, scene)
+    refinement = _finished(one, fit, climbed, scene, by_depth=True)
     half_px = climbed.surface.size_m / float(climbed.surface.center_m[2]) * scene.patch.focal_px
     drawn_px = half_width_px(scene.segments, round_=one.shape == "sphere")
     as_drawn = abs(half_px - drawn_px) < max(DRAWN_SHARE * drawn_px, DRAWN_PX)
@@ -93,7 +98,8 @@ def sought(scene: Scene, held: Held, like: RayFit, others: tuple[Other, ...]) ->
         climbed = climb(start, held.free(start), like.sigma, scene, others)
         if climbed is not None:
             base = replace(like, free=climbed.free, outlines=())
-            found.append(_finished(Ranked(shape, climbed.surface, base, 0.0), base, climbed, scene))
+            one = Ranked(shape, climbed.surface, base, 0.0)
+            found.append(_finished(one, base, climbed, scene, by_depth=False))
     return tuple(found)
 
 
@@ -121,15 +127,20 @@ def _shape(one: Refinement) -> Shape:
     return shape
 
 
-def _finished(one: Ranked, fit: RayFit, climbed: Climbed, scene: Scene) -> Refinement:
-    """What is known once a surface has come to its end."""
+def _finished(one: Ranked, fit: RayFit, climbed: Climbed, scene: Scene, *, by_depth: bool) -> Refinement:
+    """What is known once a surface has come to its end, from where matched depth has it or from elsewhere."""
     patch, surface = scene.patch, climbed.surface
     covariance = covariance_of(surface, climbed.matches, climbed.edges, climbed.free, patch.shape)
-    depth_m, known = sharpened(surface, patch, climbed.pixels, climbed.matches)
+    depth_m, known, agreeing = sharpened(surface, patch, climbed.pixels, climbed.matches)
+    if not by_depth:
+        # what was matched is known to be wrong, and what agrees is where the surface says it is
+        depth_m = np.where(agreeing & ~known, surface.trace(patch.rays).depth_m, depth_m)
+        fit = replace(fit, pixels=np.flatnonzero(agreeing).astype(np.int32), sigma=1.0, likeness=Likeness(0.0, 0.0))
     pixels, sight = fit.pixels, fit.sight
     if known.sum() > max(SHARP_SHARE * len(pixels), FEWEST_PIXELS):
         pixels = np.flatnonzero(known).astype(np.int32)
         sight = Sight(guard=float(np.percentile(surface.off_middle(patch.rays[:, pixels]), 95)))
     residual = predicted(replace(patch, depth_m=depth_m), pixels, surface, sight).residual
     better = replace(fit, surface=surface, covariance=covariance, pixels=pixels, sight=sight, residual=residual)
-    return Refinement(replace(one, surface=surface, fit=better), depth_m, climbed, trusted=False)
+    textured = float(known.sum() / max(climbed.pixels.sum(), 1))
+    return Refinement(replace(one, surface=surface, fit=better), depth_m, climbed, textured, by_depth, trusted=False)

@@ -20,8 +20,10 @@ MOST_PX = 0.75
 """Largest correction: pictures are linear in a shift of less than the width of their texture."""
 
 
-def sharpened(surface: Surface, patch: Patch, among: Bools, matches: tuple[Match, ...]) -> tuple[Floats, Bools]:
+def sharpened(surface: Surface, patch: Patch, among: Bools, matches: tuple[Match, ...]) -> tuple[Floats, Bools, Bools]:
     """Depth (N,) of a patch as the pictures have it near a surface, and for which of some pixels (N,) they have it.
+
+    Then those (N,) that agree with the surface itself, though they may have no texture to tell it from others.
 
     One step of Lucas and Kanade (1981) from the surface's own prediction, over all views at once.
     """
@@ -35,12 +37,14 @@ def sharpened(surface: Surface, patch: Patch, among: Bools, matches: tuple[Match
         sums = (weight * slope * scaled, weight * slope**2, of_noise, weight, np.ones(len(weight)))
         for image, values in zip((pull, hold, noise, believed, seen), sums, strict=True):
             image += _windowed(values, match, patch.shape)
-    textured = (hold > TEXTURE_OVER_NOISE * noise) & (believed > BELIEVED * seen) & (noise > 0)
+    agree = (believed > BELIEVED * seen) & (noise > 0)
+    textured = agree & (hold > TEXTURE_OVER_NOISE * noise)
     noise, hold, believed = (np.where(textured, image, 1.0) for image in (noise, hold, believed))
     step_m = pull / (hold - np.minimum(noise, hold / TEXTURE_OVER_NOISE))
     step_px = np.abs(step_m) * 2.0 * SMOOTHING_PX * np.sqrt(noise / believed)
     known = among & (textured & (step_px < MOST_PX)).ravel()
-    return np.where(known, surface.trace(patch.rays).depth_m + step_m.ravel(), patch.depth_m), known
+    depth_m = np.where(known, surface.trace(patch.rays).depth_m + step_m.ravel(), patch.depth_m)
+    return depth_m, known, among & agree.ravel()
 
 
 def _windowed(values: Floats, match: Match, shape: tuple[int, int]) -> Floats:
