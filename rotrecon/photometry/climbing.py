@@ -1,4 +1,4 @@
-"""A surface moved from a start until the pictures of several cameras agree over it, outlines in all of them included."""
+"""A surface moved from a start until the pictures of several cameras agree over it, outlines in them included."""
 
 from dataclasses import dataclass
 
@@ -42,13 +42,14 @@ class Climbed:
     matches: tuple[Match, ...]
     edges: tuple[Measurement, ...]
 
-    def credit(self, sigma: float, share: float) -> float:
-        """How much is explained, as half a logarithm of likelihood, at common noise and independence of the pixels."""
+    def credit(self, surface: Surface, sigma: float, share: float) -> float:
+        """How much of what was compared a surface explains, in half a likelihood's logarithm; for pixels of such a sigma,
+        of which such a share is independent."""
         earned = 0.0
         for match in self.matches:
-            earned += share * float((NOTHING - tukey(match.agreement.predict(self.surface).residual / sigma)[0]).sum())
+            earned += share * float((NOTHING - tukey(match.agreement.predict(surface).residual / sigma)[0]).sum())
         for edge in self.edges:
-            earned += float((NOTHING - tukey(edge.predict(self.surface).residual)[0]).sum())
+            earned += float((NOTHING - tukey(edge.predict(surface).residual)[0]).sum())
         return earned
 
     @property

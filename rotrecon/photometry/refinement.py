@@ -31,6 +31,8 @@ UNSURE = 0.1
 """Standard error of the radius over the radius of a fit that is no start."""
 DRAWN_SHARE, DRAWN_PX = 0.12, 2.5
 """Half widths may be off the drawing's by this share or so many px before other starts are tried."""
+TEXTURED = 0.3
+"""Of an object's pixels, how many must have a depth from the pictures for these to say what shape it has."""
 LEAST_CORRELATION = 0.5
 """Of two pictures over a surface that is where they agree best; less is none that they show."""
 
@@ -104,14 +106,21 @@ def sought(scene: Scene, held: Held, like: RayFit, others: tuple[Other, ...]) ->
 
 
 def weighed(found: tuple[Refinement, ...]) -> tuple[Refinement, ...]:
-    """Refinements with what the pictures have against each, the best first, and no shape twice."""
+    """Refinements with what the pictures have against each, the best first, and no shape twice.
+
+    All are compared with the pixels and edges of the one that explains most of its own.
+    """
     matches = [match for one in found for match in one.climbed.matches]
     if not matches:
         return ()
     clearest = min(matches, key=lambda match: match.sigma)
     share = clearest.likeness.independent_share
     count = max(share * len(clearest.pixels), 2.0)
-    costs = [PARAMETERS[_shape(one)] / 2 * np.log(count) - one.climbed.credit(clearest.sigma, share) for one in found]
+    lead = max(found, key=lambda one: one.climbed.credit(one.climbed.surface, clearest.sigma, share))
+    costs = [
+        PARAMETERS[_shape(one)] / 2 * np.log(count) - lead.climbed.credit(one.climbed.surface, clearest.sigma, share)
+        for one in found
+    ]
     order = np.argsort(costs)
     best: dict[Shape, Refinement] = {}
     for number in order:
@@ -132,15 +141,17 @@ def _finished(one: Ranked, fit: RayFit, climbed: Climbed, scene: Scene, *, by_de
     patch, surface = scene.patch, climbed.surface
     covariance = covariance_of(surface, climbed.matches, climbed.edges, climbed.free, patch.shape)
     depth_m, known, agreeing = sharpened(surface, patch, climbed.pixels, climbed.matches)
+    textured = float(known.sum() / max(climbed.pixels.sum(), 1))
     if not by_depth:
-        # what was matched is known to be wrong, and what agrees is where the surface says it is
-        depth_m = np.where(agreeing & ~known, surface.trace(patch.rays).depth_m, depth_m)
-        fit = replace(fit, pixels=np.flatnonzero(agreeing).astype(np.int32), sigma=1.0, likeness=Likeness(0.0, 0.0))
+        # what was matched is known to be wrong; without texture, what agrees is where the surface says it is
+        trace = surface.trace(patch.rays)
+        there = known if textured > TEXTURED else known | agreeing
+        depth_m = np.where(there & ~known, trace.depth_m, np.where(trace.hit & ~known, np.nan, depth_m))
+        fit = replace(fit, pixels=np.flatnonzero(there).astype(np.int32), sigma=1.0, likeness=Likeness(0.0, 0.0))
     pixels, sight = fit.pixels, fit.sight
     if known.sum() > max(SHARP_SHARE * len(pixels), FEWEST_PIXELS):
         pixels = np.flatnonzero(known).astype(np.int32)
         sight = Sight(guard=float(np.percentile(surface.off_middle(patch.rays[:, pixels]), 95)))
     residual = predicted(replace(patch, depth_m=depth_m), pixels, surface, sight).residual
     better = replace(fit, surface=surface, covariance=covariance, pixels=pixels, sight=sight, residual=residual)
-    textured = float(known.sum() / max(climbed.pixels.sum(), 1))
     return Refinement(replace(one, surface=surface, fit=better), depth_m, climbed, textured, by_depth, trusted=False)

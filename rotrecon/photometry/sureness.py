@@ -22,7 +22,8 @@ def covariance_of(
 
     H is the information that all measurements were weighted with. M is the variance of its gradient: J C J' of the
     pixels, C being the autocorrelation of their residuals; views share the reference picture's noise, so that their
-    residuals are alike too; and of a systematic shift of parts of the picture. Edges, whose share is known, have their information as variance. `shape` is the patch's.
+    residuals are alike too; and of a systematic shift of parts of the picture. Edges, whose share is known, have their
+    information as variance. `shape` is the patch's.
     """
     count = len(free)
     information, variance = np.zeros((count, count)), np.zeros((count, count))
