@@ -42,6 +42,8 @@ class _Found:
     """Heights of the ends along the axis, from its point."""
     extent: Extent | None
     soundness: Soundness
+    doubts: tuple[str, ...] = ()
+    """What the pictures leave open."""
 
     def __post_init__(self) -> None:
         freeze(self)
@@ -93,8 +95,10 @@ def _find(scene: Scene, held: Held, segmented: Reconstruction) -> _Found | FitFa
             f"the depths speak for a {ranked[0].shape} rather than a {kind}; choose that, or let the program decide"
         )
         return FitFailure(FailureReason.NOT_THIS_KIND, advice)
-    ranked, chosen, scene = _refined(ranked, chosen, (scene, held), segmented)
+    ranked, chosen, scene, doubts = _refined(ranked, chosen, (scene, held), segmented)
     found = _followed_along(ranked, chosen, scene, settings)
+    if doubts and isinstance(found, _Found):
+        return replace(found, doubts=doubts)
     if kind is not None or not isinstance(chosen.surface, Lateral) or not _is_part_only(found, chosen, scene, settings):
         return found
     turned = fit_turned(scene.patch, scene.ridge, chosen.fit)
@@ -110,8 +114,8 @@ def _find(scene: Scene, held: Held, segmented: Reconstruction) -> _Found | FitFa
 
 def _refined(
     ranked: tuple[Ranked, ...], chosen: Ranked, of: tuple[Scene, Held], segmented: Reconstruction
-) -> tuple[tuple[Ranked, ...], Ranked, Scene]:
-    """The shapes, the chosen one and the depths as the pictures have them, where the frame comes from several.
+) -> tuple[tuple[Ranked, ...], Ranked, Scene, tuple[str, ...]]:
+    """The shapes, the chosen one and the depths as the pictures of several views have them, and what they leave open.
 
     Where the pictures do not bear out what was matched, shapes are sought by them and the drawing alone.
     """
@@ -128,9 +132,9 @@ def _refined(
             ranked, chosen = tuple(one.shape for one in found), best
             first = next(one for one in found if one.shape is best)
     if first is None:
-        return ranked, chosen, scene
+        return ranked, chosen, scene, ()
     ranked = tuple(first.shape if one is chosen else one for one in ranked)
-    return ranked, first.shape, _scene_seen(first, scene, segmented.frame)
+    return ranked, first.shape, _scene_seen(first, scene, segmented.frame), first.doubts
 
 
 def _scene_seen(first: Refinement, scene: Scene, frame: Frame) -> Scene:
@@ -216,7 +220,7 @@ def _reconstruction(segmented: Reconstruction, found: _Found, radii: SectionRadi
     intervals = intervals_of(chosen, middle_m, length_m)
     candidates = candidates_of(found.ranked, chosen, middle_m, settings)
     margin = candidates[0].score - max((other.score for other in candidates[1:]), default=0.0)
-    doubts = doubts_of(chosen, found.soundness, intervals, radii.circles.state, scene, settings)
+    doubts = found.doubts + doubts_of(chosen, found.soundness, intervals, radii.circles.state, scene, settings)
     rivals = [one for one in found.ranked if one is not chosen and is_possible(one, chosen, settings)]
     low_m, high_m = intervals.diameter_m
     narrow = high_m - low_m <= settings.certain_interval * (high_m + low_m) / 2

@@ -33,10 +33,15 @@ TURNED = """
     rays.lines turned.turned extent turned.looks turned.height_radii turned.profile turned.parts
     turned.smoothness turned.turned_start turned.turned_fit
 """.split()
+PHOTOMETRY = """
+    photometry.splines photometry.carrying photometry.agreement photometry.visible photometry.matches
+    photometry.outlines photometry.sharpening photometry.sureness photometry.climbing photometry.scanning
+    photometry.drawn photometry.refinement
+""".split()
 JUDGED = """
     two_objects intervals recognition soundness judgement section_radii by_rays calibration
 """.split()
-BY_RAYS = [*FITTED, *TURNED, *JUDGED]
+BY_RAYS = [*FITTED, *TURNED, *PHOTOMETRY, *JUDGED]
 SHOWN = """
     answer curves overlay mesh
 """.split()

@@ -42,13 +42,15 @@ class Climbed:
     matches: tuple[Match, ...]
     edges: tuple[Measurement, ...]
 
-    def credit(self, surface: Surface, sigma: float, share: float) -> float:
-        """How much of what was compared a surface explains, in half a likelihood's logarithm; for pixels of such a sigma,
-        of which such a share is independent."""
+    def credit(self, surface: Surface, sigma: float, share: float, *, by_edges: bool) -> float:
+        """How much of what was compared a surface explains, in half a likelihood's logarithm.
+
+        The pixels have such a sigma, and such a share of them is independent; edges count on demand.
+        """
         earned = 0.0
         for match in self.matches:
             earned += share * float((NOTHING - tukey(match.agreement.predict(surface).residual / sigma)[0]).sum())
-        for edge in self.edges:
+        for edge in self.edges if by_edges else ():
             earned += float((NOTHING - tukey(edge.predict(surface).residual)[0]).sum())
         return earned
 

@@ -7,7 +7,7 @@ import numpy as np
 from rotrecon.arrays import Floats, freeze
 from rotrecon.frame import Frame
 from rotrecon.photometry.carrying import carrier_of
-from rotrecon.photometry.climbing import Climbed, climb, moved_px
+from rotrecon.photometry.climbing import DEPTH_SHARE, Climbed, climb, moved_px
 from rotrecon.photometry.drawn import drawn, half_width_px
 from rotrecon.photometry.matches import FEWEST_PIXELS, Other
 from rotrecon.photometry.scanning import TILTS_RAD, scanned
@@ -18,6 +18,7 @@ from rotrecon.rays.correlation import Likeness
 from rotrecon.rays.hypotheses import Held, Scene
 from rotrecon.rays.ray_fit import RayFit, Sight, predicted
 from rotrecon.rays.robust import PARAMETERS, Ranked
+from rotrecon.rays.surfaces import Surface
 from rotrecon.sections.radii import Shape
 from rotrecon.turned.turned import Turned
 
@@ -33,6 +34,8 @@ DRAWN_SHARE, DRAWN_PX = 0.12, 2.5
 """Half widths may be off the drawing's by this share or so many px before other starts are tried."""
 TEXTURED = 0.3
 """Of an object's pixels, how many must have a depth from the pictures for these to say what shape it has."""
+UNTEXTURED_DOUBT = 0.015
+"""Standard error of the radius, over the radius, that the outline and the shading of a plain object leave."""
 LEAST_CORRELATION = 0.5
 """Of two pictures over a surface that is where they agree best; less is none that they show."""
 
@@ -56,6 +59,16 @@ class Refinement:
     def __post_init__(self) -> None:
         freeze(self)
 
+    @property
+    def doubts(self) -> tuple[str, ...]:
+        """Why no tool should rely on it."""
+        if self.textured > TEXTURED or (self.by_depth and self.climbed.by_depth > DEPTH_SHARE):
+            return ()
+        return (
+            "hardly any texture is seen on the object, so that its size rests on its outline and its shading alone; "
+            "light it better, or bring the camera nearer",
+        )
+
 
 def others_of(frame: Frame) -> tuple[Other, ...]:
     """All views of a frame but the reference."""
@@ -77,8 +90,8 @@ def refined(one: Ranked, scene: Scene, others: tuple[Other, ...]) -> Refinement 
     half_px = climbed.surface.size_m / float(climbed.surface.center_m[2]) * scene.patch.focal_px
     drawn_px = half_width_px(scene.segments, round_=one.shape == "sphere")
     as_drawn = abs(half_px - drawn_px) < max(DRAWN_SHARE * drawn_px, DRAWN_PX)
-    sure = float(np.sqrt(fit.covariance.diagonal()[-1 if len(fit.free) == 4 else 4])) < UNSURE * fit.surface.size_m
-    trusted = climbed.agreeing > AGREEING_SHARE and climbed.by_depth > 0.5 and sure and as_drawn
+    sure = float(np.sqrt(fit.covariance.diagonal()[_size_of(fit)])) < UNSURE * fit.surface.size_m
+    trusted = climbed.agreeing > AGREEING_SHARE and climbed.by_depth > DEPTH_SHARE and sure and as_drawn
     return replace(refinement, trusted=trusted)
 
 
@@ -108,7 +121,7 @@ def sought(scene: Scene, held: Held, like: RayFit, others: tuple[Other, ...]) ->
 def weighed(found: tuple[Refinement, ...]) -> tuple[Refinement, ...]:
     """Refinements with what the pictures have against each, the best first, and no shape twice.
 
-    All are compared with the pixels and edges of the one that explains most of its own.
+    All are compared with the pixels, or without texture the edges too, of the one that explains most of its own.
     """
     matches = [match for one in found for match in one.climbed.matches]
     if not matches:
@@ -116,11 +129,14 @@ def weighed(found: tuple[Refinement, ...]) -> tuple[Refinement, ...]:
     clearest = min(matches, key=lambda match: match.sigma)
     share = clearest.likeness.independent_share
     count = max(share * len(clearest.pixels), 2.0)
-    lead = max(found, key=lambda one: one.climbed.credit(one.climbed.surface, clearest.sigma, share))
-    costs = [
-        PARAMETERS[_shape(one)] / 2 * np.log(count) - lead.climbed.credit(one.climbed.surface, clearest.sigma, share)
-        for one in found
-    ]
+    # what looks like an edge may be a pattern's; texture does not lie
+    by_edges = max(one.textured for one in found) < TEXTURED
+
+    def credit(of: Refinement, surface: Surface) -> float:
+        return of.climbed.credit(surface, clearest.sigma, share, by_edges=by_edges)
+
+    lead = max(found, key=lambda one: credit(one, one.climbed.surface))
+    costs = [PARAMETERS[_shape(one)] / 2 * np.log(count) - credit(lead, one.climbed.surface) for one in found]
     order = np.argsort(costs)
     best: dict[Shape, Refinement] = {}
     for number in order:
@@ -128,6 +144,11 @@ def weighed(found: tuple[Refinement, ...]) -> tuple[Refinement, ...]:
         ranked = replace(one.shape, cost=float(costs[number] - costs[order[0]]))
         best.setdefault(_shape(one), replace(one, shape=ranked))
     return tuple(best.values())
+
+
+def _size_of(fit: RayFit) -> int:
+    """Place of the radius among the parameters."""
+    return 3 if len(fit.free) == 4 else 4
 
 
 def _shape(one: Refinement) -> Shape:
@@ -152,6 +173,9 @@ def _finished(one: Ranked, fit: RayFit, climbed: Climbed, scene: Scene, *, by_de
     if known.sum() > max(SHARP_SHARE * len(pixels), FEWEST_PIXELS):
         pixels = np.flatnonzero(known).astype(np.int32)
         sight = Sight(guard=float(np.percentile(surface.off_middle(patch.rays[:, pixels]), 95)))
+    if textured <= TEXTURED and not by_depth:
+        size = _size_of(fit)
+        covariance[size, size] += (UNTEXTURED_DOUBT * surface.size_m) ** 2 * climbed.free[size]
     residual = predicted(replace(patch, depth_m=depth_m), pixels, surface, sight).residual
     better = replace(fit, surface=surface, covariance=covariance, pixels=pixels, sight=sight, residual=residual)
     return Refinement(replace(one, surface=surface, fit=better), depth_m, climbed, textured, by_depth, trusted=False)
