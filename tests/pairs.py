@@ -21,7 +21,7 @@ from rotrecon.simulation.surfaces import Texture, textured
 CAMERA = PinholeCamera(240, 180, np.array([[300.0, 0, 130.0], [0, 300.0, 89.5], [0, 0, 1]]))
 BASELINE_M = 0.06
 NOISE_LEVELS = 1.5
-LEG = Frustum("cylinder", np.zeros(3), np.array([0.0, 0.0, 1.0]), 0.3, 0.03, 0.0)
+LEG = Frustum("cylinder", np.zeros(3), np.array([0.0, 0.0, 1.0]), 0.17, 0.03, 0.0)
 CONE = Frustum("cone", np.zeros(3), np.array([0.0, 0.0, 1.0]), 0.12, 0.045, float(np.deg2rad(15)))
 BALL = Sphere(np.zeros(3), np.array([0.0, 0.0, 1.0]), 0.05)
 

@@ -73,7 +73,8 @@ class Agreement:
         """Residual (N,) with gain and offset taken out; their weighted terms (2, N), covariance (2, 2) and terms."""
         terms = np.stack([self.grey - self.grey.mean(), np.ones(len(self.grey))])
         weight = np.ones(len(self.grey))
-        weighted, inverse, residual = terms, np.empty((2, 2)), seen
+        weighted, residual = terms, seen
+        inverse: Floats = np.eye(2)
         for _ in range(BRIGHTNESS_ROUNDS + 1):
             weighted = terms * weight
             inverse = np.linalg.pinv(weighted @ terms.T, hermitian=True)

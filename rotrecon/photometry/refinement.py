@@ -1,6 +1,7 @@
 """A shape fitted to matched depth, refined against the pictures that the depth comes from."""
 
 from dataclasses import dataclass, replace
+from operator import itemgetter
 
 import numpy as np
 
@@ -137,11 +138,9 @@ def weighed(found: tuple[Refinement, ...]) -> tuple[Refinement, ...]:
 
     lead = max(found, key=lambda one: credit(one, one.climbed.surface))
     costs = [PARAMETERS[_shape(one)] / 2 * np.log(count) - credit(lead, one.climbed.surface) for one in found]
-    order = np.argsort(costs)
     best: dict[Shape, Refinement] = {}
-    for number in order:
-        one = found[number]
-        ranked = replace(one.shape, cost=float(costs[number] - costs[order[0]]))
+    for cost, one in sorted(zip(costs, found, strict=True), key=itemgetter(0)):
+        ranked = replace(one.shape, cost=float(cost - min(costs)))
         best.setdefault(_shape(one), replace(one, shape=ranked))
     return tuple(best.values())
 

@@ -47,7 +47,8 @@ class Spline:
         place = place_px - self.corner_px[:, None]
         limits = np.array(self.coefficients.shape[::-1])[:, None] - 1 - SUPPORT_PX
         with np.errstate(invalid="ignore"):
-            return ((place >= SUPPORT_PX) & (place <= limits)).all(axis=0)
+            inside: Bools = (place >= SUPPORT_PX) & (place <= limits)
+        return inside[0] & inside[1]
 
     def at(self, place_px: Floats) -> Sampled:
         """Grey values at places (2, N); those that are not within the rectangle count as its border."""

@@ -70,7 +70,7 @@ def _by_part(columns: Floats, match: Match, shape: tuple[int, int]) -> Floats:
     """Sums (k, P) over the parts of the patch of columns (k, N)."""
     row, column = np.divmod(match.pixels, shape[1])
     part = row * PARTS // shape[0] * PARTS + column * PARTS // shape[1]
-    return np.stack([np.bincount(part, one, PARTS**2) for one in columns])
+    return np.stack([np.bincount(part, one, PARTS**2).astype(np.float64) for one in columns])
 
 
 def _placed(values: Floats, match: Match, shape: tuple[int, int]) -> Floats:

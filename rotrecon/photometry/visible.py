@@ -72,4 +72,5 @@ def _summed(which: Bools, shape: tuple[int, int]) -> Floats:
     """Numbers (N,) of pixels of which something holds, in the window round each."""
     image = which.reshape(shape).astype(np.float32)
     side = (ROUND_ABOUT_PX, ROUND_ABOUT_PX)
-    return np.asarray(cv2.boxFilter(image, -1, side, normalize=False, borderType=cv2.BORDER_CONSTANT)).ravel()
+    summed = cv2.boxFilter(image, -1, side, normalize=False, borderType=cv2.BORDER_CONSTANT)
+    return np.asarray(summed, dtype=np.float64).ravel()
