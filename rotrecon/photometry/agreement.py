@@ -77,7 +77,7 @@ class Agreement:
         inverse: Floats = np.eye(2)
         for _ in range(BRIGHTNESS_ROUNDS + 1):
             weighted = terms * weight
-            inverse = np.linalg.pinv(weighted @ terms.T, hermitian=True)
+            inverse = np.asarray(np.linalg.pinv(weighted @ terms.T, hermitian=True), dtype=np.float64)
             residual = (inverse @ (weighted @ seen)) @ terms - seen
             weight = tukey(residual / max(robust_scale(residual), LEAST_SIGMA))[1]
         return residual, weighted, inverse, terms

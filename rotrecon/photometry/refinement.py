@@ -19,7 +19,7 @@ from rotrecon.rays.correlation import Likeness
 from rotrecon.rays.hypotheses import Held, Scene
 from rotrecon.rays.ray_fit import RayFit, Sight, predicted
 from rotrecon.rays.robust import PARAMETERS, Ranked
-from rotrecon.rays.surfaces import Surface
+from rotrecon.rays.surfaces import Ball, Surface
 from rotrecon.sections.radii import Shape
 from rotrecon.turned.turned import Turned
 
@@ -35,8 +35,9 @@ DRAWN_SHARE, DRAWN_PX = 0.12, 2.5
 """Half widths may be off the drawing's by this share or so many px before other starts are tried."""
 TEXTURED = 0.3
 """Of an object's pixels, how many must have a depth from the pictures for these to say what shape it has."""
-UNTEXTURED_DOUBT = 0.015
-"""Standard error of the radius, over the radius, that the outline and the shading of a plain object leave."""
+UNTEXTURED_DOUBT, UNTEXTURED_BALL_DOUBT, FULLY_TEXTURED = 0.015, 0.03, 0.5
+"""Standard error of the radius, over the radius, that outline and shading of a plain object leave, and shading alone
+that of a ball; and the share of textured pixels at which nothing of it is left."""
 LEAST_CORRELATION = 0.5
 """Of two pictures over a surface that is where they agree best; less is none that they show."""
 
@@ -172,9 +173,11 @@ def _finished(one: Ranked, fit: RayFit, climbed: Climbed, scene: Scene, *, by_de
     if known.sum() > max(SHARP_SHARE * len(pixels), FEWEST_PIXELS):
         pixels = np.flatnonzero(known).astype(np.int32)
         sight = Sight(guard=float(np.percentile(surface.off_middle(patch.rays[:, pixels]), 95)))
-    if textured <= TEXTURED and not by_depth:
+    if not by_depth:
         size = _size_of(fit)
-        covariance[size, size] += (UNTEXTURED_DOUBT * surface.size_m) ** 2 * climbed.free[size]
+        doubt = UNTEXTURED_BALL_DOUBT if isinstance(surface, Ball) else UNTEXTURED_DOUBT
+        left_m = doubt * max(1.0 - textured / FULLY_TEXTURED, 0.0) * surface.size_m
+        covariance[size, size] += left_m**2 * climbed.free[size]
     residual = predicted(replace(patch, depth_m=depth_m), pixels, surface, sight).residual
     better = replace(fit, surface=surface, covariance=covariance, pixels=pixels, sight=sight, residual=residual)
     return Refinement(replace(one, surface=surface, fit=better), depth_m, climbed, textured, by_depth, trusted=False)

@@ -63,14 +63,15 @@ def _faces(surface: Surface, points: Floats, camera_m: Floats) -> Bools:
 def _inside(surface: Surface, rays: Rays, focal_px: float) -> Bools:
     """Which rays pass inside an outline by more than the guard; all for a surface seen from inside."""
     if surface.side > 0:
-        return np.ones(rays.shape[1], dtype=np.bool_)
+        return np.ones(len(rays[0]), dtype=np.bool_)
     tangency = surface.tangency(rays)
     return tangency.gap_m * focal_px < -GUARD_PX * np.abs(tangency.depth_m)
 
 
 def _summed(which: Bools, shape: tuple[int, int]) -> Floats:
     """Numbers (N,) of pixels of which something holds, in the window round each."""
-    image = which.reshape(shape).astype(np.float32)
+    image: Floats = which.reshape(shape).astype(np.float64)
     side = (ROUND_ABOUT_PX, ROUND_ABOUT_PX)
-    summed = cv2.boxFilter(image, -1, side, normalize=False, borderType=cv2.BORDER_CONSTANT)
-    return np.asarray(summed, dtype=np.float64).ravel()
+    summed: Floats = np.empty(shape)
+    cv2.boxFilter(image, -1, side, summed, normalize=False, borderType=cv2.BORDER_CONSTANT)
+    return np.ravel(summed)
