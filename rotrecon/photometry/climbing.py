@@ -6,7 +6,7 @@ import numpy as np
 
 from rotrecon.arrays import Bools, Floats
 from rotrecon.photometry.matches import Match, Other, matches_of
-from rotrecon.photometry.outlines import CarriedOutline, outline_in
+from rotrecon.photometry.outlines import CarriedOutline, Edge, outline_in
 from rotrecon.photometry.visible import clear_of, shown
 from rotrecon.rays.fitting import TUKEY, Loss, Measurement, cauchy, refine, tukey
 from rotrecon.rays.hypotheses import Scene
@@ -40,7 +40,7 @@ class Climbed:
     by_depth: float
     """Share of them that matched depth agrees with."""
     matches: tuple[Match, ...]
-    edges: tuple[Measurement, ...]
+    edges: tuple[Edge, ...]
 
     def credit(self, surface: Surface, sigma: float, share: float, *, by_edges: bool) -> float:
         """How much of what was compared a surface explains, in half a likelihood's logarithm.
@@ -92,14 +92,14 @@ def _pixels(surface: Surface, patch: Patch, sigma: float) -> tuple[Bools, float]
     return (agreeing if by_depth > DEPTH_SHARE else clear), by_depth
 
 
-def edges_of(surface: Surface, scene: Scene, others: tuple[Other, ...]) -> list[Measurement]:
+def edges_of(surface: Surface, scene: Scene, others: tuple[Other, ...]) -> list[Edge]:
     """The outline in all pictures; none of a ball, whose edge is seen too far inside where it is the brighter side."""
     if isinstance(surface, Ball):
         return []
     own = seen_outline(surface, scene.patch, scene.segments, scene.length_m).edges
     points = (scene.patch.rays * surface.trace(scene.patch.rays).depth_m).T[scene.patch.kept]
     low, high = np.percentile(surface.heights(points), [1, 99])
-    edges: list[Measurement] = [] if own is None else [own]
+    edges: list[Edge] = [] if own is None else [own]
     for other in others:
         seen = outline_in(other.view, other.carrier, surface, scene.patch, (float(low), float(high))).edges
         if seen is not None:

@@ -4,7 +4,7 @@ from dataclasses import dataclass, replace
 
 import numpy as np
 
-from rotrecon.arrays import Bools, Indices
+from rotrecon.arrays import Bools, Floats, Indices
 from rotrecon.frame import View
 from rotrecon.photometry.carrying import Carrier
 from rotrecon.rays.fitting import Outline, Prediction
@@ -27,6 +27,11 @@ class CarriedOutline:
     def __len__(self) -> int:
         return len(self.outline)
 
+    @property
+    def sigma_px(self) -> Floats:
+        """(N,)"""
+        return self.outline.sigma_px
+
     def predict(self, surface: Surface) -> Prediction:
         """As of an outline, for the carried surface."""
         there = self.outline.predict(self.carrier.surface(surface))
@@ -35,6 +40,10 @@ class CarriedOutline:
     def chosen(self, index: Indices | Bools) -> "CarriedOutline":
         """Some of the edges."""
         return replace(self, outline=self.outline.chosen(index))
+
+
+Edge = Outline | CarriedOutline
+"""An outline in the reference picture, or in another."""
 
 
 def outline_in(

@@ -6,24 +6,27 @@ import numpy as np
 
 from rotrecon.arrays import Bools, Floats
 from rotrecon.photometry.matches import Match
-from rotrecon.rays.fitting import TUKEY, Measurement, tukey
+from rotrecon.photometry.outlines import Edge
+from rotrecon.rays.fitting import TUKEY, tukey
 from rotrecon.rays.surfaces import Surface
 
 SYSTEMATIC_PX = 0.008
 """What splines, aliasing and a lens shift one picture against the other by, alike over a part of the object."""
+EDGE_PX = 0.05
+"""What shading and blur move all edges of an object by, the same way in all pictures."""
 PARTS = 4
 """Parts, along each side of the patch, over which that is alike."""
 
 
 def covariance_of(
-    surface: Surface, matches: tuple[Match, ...], edges: Sequence[Measurement], free: Bools, shape: tuple[int, int]
+    surface: Surface, matches: tuple[Match, ...], edges: Sequence[Edge], free: Bools, shape: tuple[int, int]
 ) -> Floats:
     """Covariance (k, k) H^-1 M H^-1 of errors that are alike (Huber 1967), zero for what is not `free` (k,).
 
     H is the information that all measurements were weighted with. M is the variance of its gradient: J C J' of the
     pixels, C being the autocorrelation of their residuals; views share the reference picture's noise, so that their
     residuals are alike too; and of a systematic shift of parts of the picture. Edges, whose share is known, have their
-    information as variance. `shape` is the patch's.
+    information as variance, and that of a shift of all of them outward. `shape` is the patch's.
     """
     count = len(free)
     information, variance = np.zeros((count, count)), np.zeros((count, count))
@@ -48,11 +51,15 @@ def covariance_of(
             together = (pull != 0) & (other != 0)
             alike = float((pull * other)[together].mean()) if together.any() else 0.0
             variance += alike * (columns[second].reshape(count, -1) @ smeared.T)
+    outward = np.zeros(count)
     for edge in edges:
         prediction = edge.predict(surface)
-        own = (prediction.columns * tukey(prediction.residual)[1]) @ prediction.columns.T
+        weighted = prediction.columns * tukey(prediction.residual)[1]
+        own = weighted @ prediction.columns.T
         information += own
         variance += own
+        outward += EDGE_PX * weighted @ (1.0 / edge.sigma_px)
+    variance += np.outer(outward, outward)
     covariance = np.zeros((count, count))
     kept = np.ix_(free, free)
     inverse = np.linalg.pinv(information[kept], hermitian=True)
