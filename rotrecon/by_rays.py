@@ -6,17 +6,17 @@ import numpy as np
 
 from rotrecon.arrays import Bools, Cloud, Floats, freeze
 from rotrecon.axis import Axis, FittedAxis
+from rotrecon.by_pictures import Seen, by_pictures
 from rotrecon.extent import Extent, extent_of
 from rotrecon.frame import Frame, StereoNoise
 from rotrecon.intervals import radius_sigma
 from rotrecon.judgement import doubts_of, failure_of, too_little
 from rotrecon.outcome import Evidence, FailureReason, Fit, FitFailure, PartOf, Range
-from rotrecon.photometry.refinement import Refinement, others_of, refined, sought, weighed
 from rotrecon.primitives import Primitive
 from rotrecon.rays.hypotheses import Held, Scene, scene_of
 from rotrecon.rays.patch import Patch, patch_of
 from rotrecon.rays.robust import Ranked, rank
-from rotrecon.rays.starts import ridge, robust_line
+from rotrecon.rays.starts import robust_line
 from rotrecon.rays.surfaces import Lateral
 from rotrecon.recognition import candidates_of, chosen_of, intervals_of, is_possible, solid_of
 from rotrecon.reconstruction import Cut, Reconstruction
@@ -95,10 +95,11 @@ def _find(scene: Scene, held: Held, segmented: Reconstruction) -> _Found | FitFa
             f"the depths speak for a {ranked[0].shape} rather than a {kind}; choose that, or let the program decide"
         )
         return FitFailure(FailureReason.NOT_THIS_KIND, advice)
-    ranked, chosen, scene, doubts = _refined(ranked, chosen, (scene, held), segmented)
+    seen = by_pictures(Seen(ranked, chosen, scene), held, segmented.frame, kind, settings)
+    ranked, chosen, scene = seen.ranked, seen.chosen, seen.scene
     found = _followed_along(ranked, chosen, scene, settings)
-    if doubts and isinstance(found, _Found):
-        return replace(found, doubts=doubts)
+    if seen.doubts and isinstance(found, _Found):
+        return replace(found, doubts=seen.doubts)
     if kind is not None or not isinstance(chosen.surface, Lateral) or not _is_part_only(found, chosen, scene, settings):
         return found
     turned = fit_turned(scene.patch, scene.ridge, chosen.fit)
@@ -110,44 +111,6 @@ def _find(scene: Scene, held: Held, segmented: Reconstruction) -> _Found | FitFa
     if isinstance(better, FitFailure) or better.soundness.inlier_share < settings.turned_inlier_share:
         return found
     return better
-
-
-def _refined(
-    ranked: tuple[Ranked, ...], chosen: Ranked, of: tuple[Scene, Held], segmented: Reconstruction
-) -> tuple[tuple[Ranked, ...], Ranked, Scene, tuple[str, ...]]:
-    """The shapes, the chosen one and the depths as the pictures of several views have them, and what they leave open.
-
-    Where the pictures do not bear out what was matched, shapes are sought by them and the drawing alone.
-    """
-    scene, held = of
-    others = others_of(segmented.frame)
-    assert chosen.fit is not None
-    first = refined(chosen, scene, others)
-    if first is None or not first.trusted:
-        found = weighed((*((first,) if first else ()), *(sought(scene, held, chosen.fit, others) if others else ())))
-        best = (
-            chosen_of(tuple(one.shape for one in found), segmented.drawing.kind, segmented.settings) if found else None
-        )
-        if best is not None:
-            ranked, chosen = tuple(one.shape for one in found), best
-            first = next(one for one in found if one.shape is best)
-    if first is None:
-        return ranked, chosen, scene, ()
-    ranked = tuple(first.shape if one is chosen else one for one in ranked)
-    return ranked, first.shape, _scene_seen(first, scene, segmented.frame), first.doubts
-
-
-def _scene_seen(first: Refinement, scene: Scene, frame: Frame) -> Scene:
-    """The scene with the depths of a refinement, and the ridge that they have if matched ones had none."""
-    patch = replace(scene.patch, depth_m=first.depth_m)
-    if first.by_depth:
-        return replace(scene, patch=patch)
-    depth_m = np.full(frame.camera.width * frame.camera.height, np.nan)
-    pixels = np.flatnonzero(first.climbed.pixels).astype(np.int32)
-    depth_m[patch.frame_pixels(pixels)] = first.depth_m[pixels]
-    cells = depth_m[scene.segments.pixel]
-    shown = scene.segments.inside & np.isfinite(cells)
-    return replace(scene, patch=patch, ridge=ridge(frame.camera, cells, scene.segments, shown))
 
 
 def _is_part_only(found: _Found | FitFailure, chosen: Ranked, scene: Scene, settings: Settings) -> bool:
