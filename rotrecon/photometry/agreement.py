@@ -7,7 +7,7 @@ import numpy as np
 from rotrecon.arrays import Bools, Floats, Indices, freeze
 from rotrecon.photometry.carrying import Carrier
 from rotrecon.photometry.splines import Spline
-from rotrecon.rays.fitting import Prediction, robust_scale, tukey
+from rotrecon.rays.fitting import UNSCALED, Prediction, robust_scale, tukey
 from rotrecon.rays.surfaces import Rays, Surface
 
 BRIGHTNESS_ROUNDS = 2
@@ -56,7 +56,7 @@ class Agreement:
         seen, by_depth, _ = self._seen(trace.depth_m)
         residual, weighted, inverse, terms = self._balanced(seen)
         columns = np.nan_to_num(trace.columns * by_depth)
-        return Prediction(residual, columns - (columns @ weighted.T) @ inverse @ terms)
+        return Prediction(columns - (columns @ weighted.T) @ inverse @ terms, UNSCALED, residual)
 
     def along_rays(self, surface: Surface) -> Change:
         """Residuals, and how they change with each pixel's own depth."""

@@ -7,7 +7,7 @@ import numpy as np
 from rotrecon.arrays import Bools, Floats, Indices
 from rotrecon.frame import View
 from rotrecon.photometry.carrying import Carrier
-from rotrecon.rays.fitting import Outline, Prediction
+from rotrecon.rays.fitting import UNSCALED, Outline, Prediction
 from rotrecon.rays.limbs import SeenOutline, edges_at, limbs_of
 from rotrecon.rays.patch import Patch
 from rotrecon.rays.surfaces import Surface
@@ -35,7 +35,7 @@ class CarriedOutline:
     def predict(self, surface: Surface) -> Prediction:
         """As of an outline, for the carried surface."""
         there = self.outline.predict(self.carrier.surface(surface))
-        return Prediction(there.residual, self.carrier.columns(there.columns, surface))
+        return Prediction(self.carrier.columns(there.columns, surface), UNSCALED, there.residual)
 
     def chosen(self, index: Indices | Bools) -> "CarriedOutline":
         """Some of the edges."""
