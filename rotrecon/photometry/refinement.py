@@ -179,5 +179,6 @@ def _finished(one: Ranked, fit: RayFit, climbed: Climbed, scene: Scene, *, by_de
         left_m = doubt * max(1.0 - textured / FULLY_TEXTURED, 0.0) * surface.size_m
         covariance[size, size] += left_m**2 * climbed.free[size]
     residual = predicted(replace(patch, depth_m=depth_m), pixels, surface, sight).residual
-    better = replace(fit, surface=surface, covariance=covariance, pixels=pixels, sight=sight, residual=residual)
+    told = {"own_covariance": lambda: covariance, "doubt": 0.0}
+    better = replace(fit, surface=surface, pixels=pixels, sight=sight, residual=residual, **told)
     return Refinement(replace(one, surface=surface, fit=better), depth_m, climbed, textured, by_depth, trusted=False)
