@@ -4,10 +4,11 @@ from dataclasses import dataclass, replace
 
 import numpy as np
 
-from rotrecon.arrays import Cloud, Floats, freeze
+from rotrecon.arrays import Bools, Cloud, Floats, freeze
 from rotrecon.axis import Axis, FittedAxis
+from rotrecon.by_pictures import Seen, by_pictures
 from rotrecon.extent import Extent, extent_of
-from rotrecon.frame import StereoNoise
+from rotrecon.frame import Frame, StereoNoise
 from rotrecon.intervals import radius_sigma
 from rotrecon.judgement import doubts_of, failure_of, too_little
 from rotrecon.outcome import Evidence, FailureReason, Fit, FitFailure, PartOf, Range
@@ -32,6 +33,8 @@ from rotrecon.turned.turned_fit import fit_turned
 class _Found:
     """The chosen shape and what is known of it."""
 
+    scene: Scene
+    """With the depths that it was compared with."""
     ranked: tuple[Ranked, ...]
     chosen: Ranked
     axis: Axis
@@ -39,6 +42,8 @@ class _Found:
     """Heights of the ends along the axis, from its point."""
     extent: Extent | None
     soundness: Soundness
+    doubts: tuple[str, ...] = ()
+    """What the pictures leave open."""
 
     def __post_init__(self) -> None:
         freeze(self)
@@ -64,7 +69,7 @@ def by_rays(segmented: Reconstruction, depth_m: Cloud) -> Reconstruction:
     found = _find(scene, held, segmented)
     if isinstance(found, FitFailure):
         return replace(segmented, fit=found)
-    radii = _sections(found, patch, segmented)
+    radii = _sections(found, segmented)
     excluded = [number for number in drawing.excluded_sections if 0 <= number < len(radii.circles.state)]
     if excluded:
         found = _find(replace(scene, patch=_without(patch, radii, excluded)), held, segmented)
@@ -73,7 +78,7 @@ def by_rays(segmented: Reconstruction, depth_m: Cloud) -> Reconstruction:
             many = f"{len(excluded)} of {len(radii.heights_m)} sections are excluded by hand; put some of them back"
             failure, left = FitFailure(found.reason, many), Cut(radii.circles, None)
             return replace(segmented, fit=failure, sections=radii.sections, second_cut=left)
-    return _reconstruction(segmented, found, radii, scene)
+    return _reconstruction(segmented, found, radii)
 
 
 def _find(scene: Scene, held: Held, segmented: Reconstruction) -> _Found | FitFailure:
@@ -90,7 +95,11 @@ def _find(scene: Scene, held: Held, segmented: Reconstruction) -> _Found | FitFa
             f"the depths speak for a {ranked[0].shape} rather than a {kind}; choose that, or let the program decide"
         )
         return FitFailure(FailureReason.NOT_THIS_KIND, advice)
+    seen = by_pictures(Seen(ranked, chosen, scene), held, segmented.frame, kind, settings)
+    ranked, chosen, scene = seen.ranked, seen.chosen, seen.scene
     found = _followed_along(ranked, chosen, scene, settings)
+    if seen.doubts and isinstance(found, _Found):
+        return replace(found, doubts=seen.doubts)
     if kind is not None or not isinstance(chosen.surface, Lateral) or not _is_part_only(found, chosen, scene, settings):
         return found
     turned = fit_turned(scene.patch, scene.ridge, chosen.fit)
@@ -133,15 +142,25 @@ def _followed_along(
         axis = Axis(surface.center_m, robust_line(scene.ridge.points_m)[1])
     soundness = soundness_of(chosen.fit, scene.patch, ends_m)
     failure = failure_of(chosen, soundness, scene, settings)
-    return failure or _Found(ranked, chosen, axis, ends_m, extent, soundness)
+    return failure or _Found(scene, ranked, chosen, axis, ends_m, extent, soundness)
 
 
-def _sections(found: _Found, patch: Patch, segmented: Reconstruction) -> SectionRadii:
+def _sections(found: _Found, segmented: Reconstruction) -> SectionRadii:
     """As many sections as the drawing has, across the axis, through the depths that agree."""
-    count, cloud_m = len(segmented.segments.pixel), segmented.frame.points_m
     assert found.chosen.fit is not None
-    agreeing = found.soundness.agreeing
+    count, patch, agreeing = len(segmented.segments.pixel), found.scene.patch, found.soundness.agreeing
+    cloud_m = _cloud(segmented.frame, patch, agreeing)
     return section_radii(found.chosen.fit, found.axis, patch, agreeing, cloud_m, count, segmented.settings)
+
+
+def _cloud(frame: Frame, patch: Patch, agreeing: Bools) -> Cloud:
+    """The frame's cloud, with the depths of a patch's agreeing pixels (N,) where views have sharpened them."""
+    if not frame.views:
+        return frame.points_m
+    pixels = np.flatnonzero(agreeing).astype(np.int32)
+    points_m = frame.points_m.copy()
+    points_m.reshape(-1, 3)[patch.frame_pixels(pixels)] = (patch.rays[:, pixels] * patch.depth_m[pixels]).T
+    return points_m
 
 
 def _without(patch: Patch, radii: SectionRadii, excluded: list[int]) -> Patch:
@@ -154,8 +173,8 @@ def _without(patch: Patch, radii: SectionRadii, excluded: list[int]) -> Patch:
     return replace(patch, drawn=drawn)
 
 
-def _reconstruction(segmented: Reconstruction, found: _Found, radii: SectionRadii, scene: Scene) -> Reconstruction:
-    settings, chosen = segmented.settings, found.chosen
+def _reconstruction(segmented: Reconstruction, found: _Found, radii: SectionRadii) -> Reconstruction:
+    settings, chosen, scene = segmented.settings, found.chosen, found.scene
     assert chosen.fit is not None
     kind = segmented.drawing.kind
     solid = solid_of(chosen, kind, found.ends_m, found.axis.direction, settings)
@@ -164,7 +183,7 @@ def _reconstruction(segmented: Reconstruction, found: _Found, radii: SectionRadi
     intervals = intervals_of(chosen, middle_m, length_m)
     candidates = candidates_of(found.ranked, chosen, middle_m, settings)
     margin = candidates[0].score - max((other.score for other in candidates[1:]), default=0.0)
-    doubts = doubts_of(chosen, found.soundness, intervals, radii.circles.state, scene, settings)
+    doubts = found.doubts + doubts_of(chosen, found.soundness, intervals, radii.circles.state, scene, settings)
     rivals = [one for one in found.ranked if one is not chosen and is_possible(one, chosen, settings)]
     low_m, high_m = intervals.diameter_m
     narrow = high_m - low_m <= settings.certain_interval * (high_m + low_m) / 2

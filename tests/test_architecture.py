@@ -33,10 +33,15 @@ TURNED = """
     rays.lines turned.turned extent turned.looks turned.height_radii turned.profile turned.parts
     turned.smoothness turned.turned_start turned.turned_fit
 """.split()
-JUDGED = """
-    two_objects intervals recognition soundness judgement section_radii by_rays calibration
+PHOTOMETRY = """
+    photometry.splines photometry.carrying photometry.agreement photometry.visible photometry.matches
+    photometry.outlines photometry.sharpening photometry.sureness photometry.climbing photometry.scanning
+    photometry.drawn photometry.refinement
 """.split()
-BY_RAYS = [*FITTED, *TURNED, *JUDGED]
+JUDGED = """
+    two_objects intervals recognition by_pictures soundness judgement section_radii by_rays calibration
+""".split()
+BY_RAYS = [*FITTED, *TURNED, *PHOTOMETRY, *JUDGED]
 SHOWN = """
     answer curves overlay mesh
 """.split()

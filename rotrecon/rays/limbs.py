@@ -163,9 +163,13 @@ def seen_outline(surface: Surface, patch: Patch, segments: CrossSegments, length
     heights_m = np.linspace(-OUTLINE_REACH, OUTLINE_REACH, OUTLINE_SECTIONS) * length_m
     limbs = limbs_of(surface, patch, heights_m)
     row = (limbs.point_px - segments.origin_px) @ segments.along
-    limbs = limbs.chosen((row >= 0) & (row <= len(segments.pixel)))
+    return edges_at(limbs.chosen((row >= 0) & (row <= len(segments.pixel))), surface, patch)
+
+
+def edges_at(limbs: Limbs, surface: Surface, patch: Patch) -> SeenOutline:
+    """The edges in a patch's picture near limb points of a surface."""
     if len(limbs.side) < FEWEST_LIMBS:
-        return nothing
+        return SeenOutline(None, 0)
     radius_m = surface.radius_m + surface.slope * limbs.along if isinstance(surface, Lateral) else surface.radius_m
     half_width_px = radius_m / limbs.depth_m * patch.focal_px
     reach_px = float(np.clip(REACH_SHARE * np.median(half_width_px), LEAST_REACH_PX, MOST_REACH_PX))
@@ -173,7 +177,7 @@ def seen_outline(surface: Surface, patch: Patch, segments: CrossSegments, length
     trusted = np.array([side.trusted for side in found.sides])
     usable = np.isfinite(found.offset_px) & trusted[np.searchsorted(np.unique(limbs.side), limbs.side)]
     if not usable.any():
-        return nothing
+        return SeenOutline(None, 0)
     place = limbs.point_px[usable] + found.offset_px[usable, None] * limbs.normal_px[usable]
     number = np.searchsorted(np.unique(limbs.side), limbs.side[usable])
     blur_px = np.array([side.blur_px for side in found.sides])[number]

@@ -1,0 +1,62 @@
+"""The chosen shape as the pictures of several views have it; they overrule what was matched where the two differ."""
+
+from dataclasses import dataclass, replace
+
+import numpy as np
+
+from rotrecon.frame import Frame
+from rotrecon.photometry.refinement import Refinement, others_of, refined, sought, weighed
+from rotrecon.primitives import Kind
+from rotrecon.rays.hypotheses import Held, Scene
+from rotrecon.rays.robust import Ranked
+from rotrecon.rays.starts import ridge
+from rotrecon.recognition import chosen_of
+from rotrecon.settings import Settings
+
+
+@dataclass(frozen=True, eq=False)
+class Seen:
+    """The shapes, the one that was chosen, and what they are compared with."""
+
+    ranked: tuple[Ranked, ...]
+    chosen: Ranked
+    scene: Scene
+    doubts: tuple[str, ...] = ()
+    """What the pictures leave open."""
+
+
+def by_pictures(matched: Seen, held: Held, frame: Frame, kind: Kind | None, settings: Settings) -> Seen:
+    """What was found by matched depth, refined; as it is where the frame does not come from several views.
+
+    Where the pictures do not bear out what was matched, shapes are sought by them and the drawing alone.
+    """
+    others = others_of(frame)
+    if not others:
+        return matched
+    scene, fit = matched.scene, matched.chosen.fit
+    assert fit is not None
+    ranked, chosen, first = matched.ranked, matched.chosen, refined(matched.chosen, scene, others)
+    if first is None or not first.trusted:
+        found = weighed((*((first,) if first else ()), *sought(scene, held, fit, others)))
+        shapes = tuple(one.shape for one in found)
+        best = chosen_of(shapes, kind, settings) if shapes else None
+        if best is not None:
+            ranked, chosen = shapes, best
+            first = next(one for one in found if one.shape is best)
+    if first is None:
+        return matched
+    ranked = tuple(first.shape if one is chosen else one for one in ranked)
+    return Seen(ranked, first.shape, _scene_seen(first, scene, frame), first.doubts)
+
+
+def _scene_seen(first: Refinement, scene: Scene, frame: Frame) -> Scene:
+    """The scene with the depths of a refinement, and the ridge that they have if matched ones had none."""
+    patch = replace(scene.patch, depth_m=first.depth_m)
+    if first.by_depth:
+        return replace(scene, patch=patch)
+    depth_m = np.full(frame.camera.width * frame.camera.height, np.nan)
+    pixels = np.flatnonzero(first.climbed.pixels).astype(np.int32)
+    depth_m[patch.frame_pixels(pixels)] = first.depth_m[pixels]
+    cells = depth_m[scene.segments.pixel]
+    shown = scene.segments.inside & np.isfinite(cells)
+    return replace(scene, patch=patch, ridge=ridge(frame.camera, cells, scene.segments, shown))

@@ -1,0 +1,87 @@
+"""How far two views agree in brightness over a surface, pixel by pixel of the reference picture."""
+
+from dataclasses import dataclass, replace
+
+import numpy as np
+
+from rotrecon.arrays import Bools, Floats, Indices, freeze
+from rotrecon.photometry.carrying import Carrier
+from rotrecon.photometry.splines import Spline
+from rotrecon.rays.fitting import UNSCALED, Prediction, robust_scale, tukey
+from rotrecon.rays.surfaces import Rays, Surface
+
+BRIGHTNESS_ROUNDS = 2
+"""Reweighted rounds for gain and offset: the surface's own rounds go on from there."""
+LEAST_SIGMA = 1e-6
+"""Grey; of pictures that agree to the last digit."""
+
+
+@dataclass(frozen=True, eq=False)
+class Change:
+    """Residuals of pixels, and how each changes with the pixel's depth."""
+
+    residual: Floats
+    """(N,) grey values."""
+    by_depth: Floats
+    """(N,) of the predicted, grey values a metre."""
+    px_by_depth: Floats
+    """(N,) shift in the other picture, px a metre."""
+
+
+@dataclass(frozen=True, eq=False)
+class Agreement:
+    """Grey values of the reference picture, which the other one has where the surface carries them.
+
+    Gain and offset between the pictures are found anew for every surface, and the derivatives are those at the best
+    gain and offset (variable projection, Kaufman 1975).
+    """
+
+    rays: Rays
+    """(3, N) of the reference camera."""
+    grey: Floats
+    """(N,) of its picture, there."""
+    other: Spline
+    """The other view's picture."""
+    carrier: Carrier
+
+    def __post_init__(self) -> None:
+        freeze(self)
+
+    def __len__(self) -> int:
+        return len(self.grey)
+
+    def predict(self, surface: Surface) -> Prediction:
+        """Residuals and derivatives in grey values."""
+        trace = surface.trace(self.rays)
+        seen, by_depth, _ = self._seen(trace.depth_m)
+        residual, weighted, inverse, terms = self._balanced(seen)
+        columns = np.nan_to_num(trace.columns * by_depth)
+        return Prediction(columns - (columns @ weighted.T) @ inverse @ terms, UNSCALED, residual)
+
+    def along_rays(self, surface: Surface) -> Change:
+        """Residuals, and how they change with each pixel's own depth."""
+        seen, by_depth, px_by_depth = self._seen(surface.trace(self.rays).depth_m)
+        return Change(self._balanced(seen)[0], np.nan_to_num(by_depth), np.nan_to_num(px_by_depth))
+
+    def _seen(self, depth_m: Floats) -> tuple[Floats, Floats, Floats]:
+        """What the other picture shows, and its change and the place's by depth; all (N,)."""
+        place_px, by_depth = self.carrier.carried(self.rays, depth_m)
+        seen = self.other.at(place_px)
+        return seen.grey, seen.by_u * by_depth[0] + seen.by_v * by_depth[1], np.hypot(by_depth[0], by_depth[1])
+
+    def _balanced(self, seen: Floats) -> tuple[Floats, Floats, Floats, Floats]:
+        """Residual (N,) with gain and offset taken out; their weighted terms (2, N), covariance (2, 2) and terms."""
+        terms = np.stack([self.grey - self.grey.mean(), np.ones(len(self.grey))])
+        weight = np.ones(len(self.grey))
+        weighted, residual = terms, seen
+        inverse: Floats = np.eye(2)
+        for _ in range(BRIGHTNESS_ROUNDS + 1):
+            weighted = terms * weight
+            inverse = np.asarray(np.linalg.pinv(weighted @ terms.T, hermitian=True), dtype=np.float64)
+            residual = (inverse @ (weighted @ seen)) @ terms - seen
+            weight = tukey(residual / max(robust_scale(residual), LEAST_SIGMA))[1]
+        return residual, weighted, inverse, terms
+
+    def chosen(self, index: Indices | Bools) -> "Agreement":
+        """Some of the pixels."""
+        return replace(self, rays=self.rays[:, index], grey=self.grey[index])

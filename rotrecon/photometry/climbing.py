@@ -1,0 +1,118 @@
+"""A surface moved from a start until the pictures of several cameras agree over it, outlines in them included."""
+
+from dataclasses import dataclass
+
+import numpy as np
+
+from rotrecon.arrays import Bools, Floats
+from rotrecon.photometry.matches import Match, Other, matches_of
+from rotrecon.photometry.outlines import CarriedOutline, Edge, outline_in
+from rotrecon.photometry.visible import clear_of, shown
+from rotrecon.rays.fitting import TUKEY, Loss, Measurement, cauchy, refine, tukey
+from rotrecon.rays.hypotheses import Scene
+from rotrecon.rays.limbs import seen_outline
+from rotrecon.rays.patch import Patch
+from rotrecon.rays.ray_fit import spread
+from rotrecon.rays.surfaces import Ball, Surface
+
+ROUNDS: tuple[tuple[Loss, int], ...] = ((cauchy, 3000), (tukey, 12000))
+"""Loss and most pixels, of all views together: some of them are enough to find the way. Each chooses them anew."""
+ITERATIONS = 8
+MOVED_PIXELS = 500
+"""Enough to tell how far a surface moved."""
+SOUGHT_AGAIN_PX = 1.0
+"""A surface whose outline moved by more may have been given the wrong edges."""
+DEPTH_SHARE = 0.5
+"""Of a surface's pixels, how many matched depth must agree with it to have a say in which they are."""
+NOTHING = TUKEY**2 / 6
+"""Cost of a measurement that a surface does not explain."""
+
+
+@dataclass(frozen=True, eq=False)
+class Climbed:
+    """Where a surface ended."""
+
+    start: Surface
+    surface: Surface
+    free: Bools
+    pixels: Bools
+    """(N,) of the patch that show it."""
+    by_depth: float
+    """Share of them that matched depth agrees with."""
+    matches: tuple[Match, ...]
+    edges: tuple[Edge, ...]
+
+    def credit(self, surface: Surface, sigma: float, share: float, *, by_edges: bool) -> float:
+        """How much of what was compared a surface explains, in half a likelihood's logarithm.
+
+        The pixels have such a sigma, and such a share of them is independent; edges count on demand.
+        """
+        earned = 0.0
+        for match in self.matches:
+            earned += share * float((NOTHING - tukey(match.agreement.predict(surface).residual / sigma)[0]).sum())
+        for edge in self.edges if by_edges else ():
+            earned += float((NOTHING - tukey(edge.predict(surface).residual)[0]).sum())
+        return earned
+
+    @property
+    def agreeing(self) -> float:
+        """Share of the compared pixels that agree; 0 where there are none."""
+        agree = [tukey(match.agreement.predict(self.surface).residual / match.sigma)[1] > 0 for match in self.matches]
+        return float(np.concatenate(agree).mean()) if agree else 0.0
+
+
+def climb(start: Surface, free: Bools, sigma: float, scene: Scene, others: tuple[Other, ...]) -> Climbed | None:
+    """The surface that a start leads to, of which `free` (k,) parameters are to be found.
+
+    `sigma` is that of matched depth. None where there is neither texture nor an outline.
+    """
+    patch, units = scene.patch, start.units(scene.length_m)
+    surface = sought = start
+    edges = edges_of(surface, scene, others)
+    pixels, by_depth = _pixels(surface, patch, sigma)
+    matches = ()
+    for loss, most in ROUNDS:
+        if moved_px(sought, surface, patch, others) > SOUGHT_AGAIN_PX:
+            sought, edges = surface, edges_of(surface, scene, others)
+        pixels, by_depth = _pixels(surface, patch, sigma)
+        matches = matches_of(surface, patch, pixels, others, most)
+        measurements: list[Measurement] = [*(match.agreement for match in matches), *edges]
+        if not measurements:
+            return None
+        weighting = [*(match.weighting for match in matches), *((1.0, 1.0) for _ in edges)]
+        surface = refine(surface, measurements, weighting, loss, free, units, ITERATIONS).surface
+    return Climbed(start, surface, free, pixels, by_depth, matches, tuple(edges))
+
+
+def _pixels(surface: Surface, patch: Patch, sigma: float) -> tuple[Bools, float]:
+    """Pixels (N,) that show a surface, and the share of them with which matched depth agrees; all where few do."""
+    clear = clear_of(surface, patch)
+    agreeing = shown(surface, patch, clear, sigma)
+    by_depth = float(agreeing.sum() / max(clear.sum(), 1))
+    return (agreeing if by_depth > DEPTH_SHARE else clear), by_depth
+
+
+def edges_of(surface: Surface, scene: Scene, others: tuple[Other, ...]) -> list[Edge]:
+    """The outline in all pictures; none of a ball, whose edge is seen too far inside where it is the brighter side."""
+    if isinstance(surface, Ball):
+        return []
+    own = seen_outline(surface, scene.patch, scene.segments, scene.length_m).edges
+    points = (scene.patch.rays * surface.trace(scene.patch.rays).depth_m).T[scene.patch.kept]
+    low, high = np.percentile(surface.heights(points), [1, 99])
+    edges: list[Edge] = [] if own is None else [own]
+    for other in others:
+        seen = outline_in(other.view, other.carrier, surface, scene.patch, (float(low), float(high))).edges
+        if seen is not None:
+            edges.append(CarriedOutline(seen, other.carrier))
+    return edges
+
+
+def moved_px(before: Surface, after: Surface, patch: Patch, others: tuple[Other, ...]) -> float:
+    """How far the points of a surface moved in the other pictures, at most, in the median of the object's pixels."""
+    rays = patch.rays[:, spread(np.flatnonzero(patch.kept).astype(np.int32), MOVED_PIXELS)]
+    first, second = (surface.trace(rays).depth_m for surface in (before, after))
+    moved: list[Floats] = [
+        np.linalg.norm(other.carrier.carried(rays, second)[0] - other.carrier.carried(rays, first)[0], axis=0)
+        for other in others
+    ]
+    return float(max(np.nanmedian(one) for one in moved))

@@ -1,0 +1,56 @@
+"""Surfaces as they are drawn, at no known distance: where depth says little, the drawing still says where to look."""
+
+import numpy as np
+
+from rotrecon.arrays import Floats
+from rotrecon.drawing import CrossSegments
+from rotrecon.rays.patch import Patch
+from rotrecon.rays.surfaces import Ball, Lateral, Surface, turn_of
+from rotrecon.sections.radii import Shape
+
+DRAWN_MARGIN_PX = 6.0
+"""Distance of a drawn area from the outline: nobody draws closer."""
+LEAST_HALF_WIDTH_PX = 3.0
+"""Of what an area may be drawn round."""
+
+
+def drawn(shape: Shape, patch: Patch, segments: CrossSegments, distance_m: float) -> Surface:
+    """A cylinder, cone or sphere that fills the drawn area but for a margin, square to the line of sight."""
+    rows, offset, half_px = _sections(segments)
+    place = segments.origin_px + rows[:, None] * segments.along + offset[:, None] * segments.across
+    if shape == "sphere":
+        return _ball(patch, place, half_px, distance_m)
+    slope = float(np.polyfit(rows, half_px, 1)[0])
+    lean, middle = np.polyfit(rows, offset, 1)
+    ends = segments.origin_px + rows[[0, -1], None] * segments.along
+    ends = ends + (lean * rows[[0, -1]] + middle)[:, None] * segments.across
+    start, end = patch.camera.unproject(ends, np.ones(2))
+    center = (start + end) / 2
+    center *= distance_m / np.linalg.norm(center)
+    along = end / np.linalg.norm(end) - start / np.linalg.norm(start)
+    along -= (along @ center) * center / distance_m**2
+    radius_m = float(np.median(half_px)) / patch.focal_px * distance_m
+    tapers = shape == "cone"
+    turn = turn_of(along / np.linalg.norm(along), -center)
+    return Lateral(center, turn, radius_m, slope if tapers else 0.0, patch.focal_px, tapers)
+
+
+def half_width_px(segments: CrossSegments, *, round_: bool) -> float:
+    """Half the width of what is drawn: of a round thing where it is widest."""
+    return float(np.percentile(_sections(segments)[2], 95 if round_ else 50))
+
+
+def _sections(segments: CrossSegments) -> tuple[Floats, Floats, Floats]:
+    """Number (n,), offset of the middle from the stroke, and half width less the margin, of each section."""
+    some = segments.inside.any(axis=1)
+    width = segments.inside[some].sum(axis=1).astype(np.float64)
+    first = segments.inside[some].argmax(axis=1) + segments.first_offset_px
+    half_px = np.maximum(width / 2 - DRAWN_MARGIN_PX, LEAST_HALF_WIDTH_PX)
+    return np.flatnonzero(some).astype(np.float64), first + (width - 1) / 2, half_px
+
+
+def _ball(patch: Patch, place_px: Floats, half_px: Floats, distance_m: float) -> Ball:
+    """The ball in the middle of sections of half widths (n,) at places (n, 2)."""
+    middle = patch.camera.unproject((place_px[:1] + place_px[-1:]) / 2, np.ones(1))[0]
+    radius_m = float(np.percentile(half_px, 95)) / patch.focal_px * distance_m
+    return Ball(distance_m * middle / np.linalg.norm(middle), radius_m, patch.focal_px)

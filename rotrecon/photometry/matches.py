@@ -1,0 +1,82 @@
+"""The pixels of the reference picture that are compared with each other view, and what they err by."""
+
+from dataclasses import dataclass
+
+import numpy as np
+
+from rotrecon.arrays import Bools, Floats, Indices, freeze
+from rotrecon.frame import View
+from rotrecon.photometry.agreement import LEAST_SIGMA, Agreement
+from rotrecon.photometry.carrying import Carrier
+from rotrecon.photometry.splines import smoothed, spline_of
+from rotrecon.photometry.visible import seen_too
+from rotrecon.rays.correlation import Likeness, likeness_of
+from rotrecon.rays.fitting import robust_scale
+from rotrecon.rays.patch import Patch
+from rotrecon.rays.ray_fit import INLIER_SIGMA, spread
+from rotrecon.rays.surfaces import Surface
+
+SMOOTHING_PX = 0.7
+"""Standard deviation of the low pass on both pictures: without it noise passes for texture where there is little, and
+intervals are half as wide as they should be; with twice as much the limbs reach the inner pixels (both measured)."""
+FEWEST_PIXELS = 100
+"""Fewer have no texture to speak of."""
+
+
+@dataclass(frozen=True, eq=False)
+class Other:
+    """Another view, and how its camera stands to the reference camera."""
+
+    view: View
+    carrier: Carrier
+
+
+@dataclass(frozen=True, eq=False)
+class Match:
+    """Pixels compared with one other view."""
+
+    pixels: Indices
+    """(N,) of the patch."""
+    agreement: Agreement
+    sigma: float
+    """Of the residuals, in grey values."""
+    likeness: Likeness
+
+    def __post_init__(self) -> None:
+        freeze(self)
+
+    @property
+    def weighting(self) -> tuple[float, float]:
+        """Sigma and independent share."""
+        return self.sigma, self.likeness.independent_share
+
+
+def matches_of(
+    surface: Surface, patch: Patch, pixels: Bools, others: tuple[Other, ...], most: int
+) -> tuple[Match, ...]:
+    """Those of some pixels (N,) of a patch that other views see too, one match a view; none for too few.
+
+    At most `most` pixels are compared, of all views together.
+    """
+    grey = smoothed(patch.picture(), SMOOTHING_PX).ravel()
+    found = (_match(surface, patch, grey, pixels, other, most // len(others)) for other in others)
+    return tuple(match for match in found if match is not None)
+
+
+def _match(surface: Surface, patch: Patch, grey: Floats, among: Bools, other: Other, most: int) -> Match | None:
+    pixels = np.flatnonzero(among).astype(np.int32)
+    pixels = pixels[seen_too(surface, patch.rays[:, pixels], other.carrier)]
+    if len(pixels) < FEWEST_PIXELS:
+        return None
+    rays = patch.rays[:, pixels]
+    place_px, _ = other.carrier.carried(rays, surface.trace(rays).depth_m)
+    spline = spline_of(other.view.image, place_px.min(axis=1), place_px.max(axis=1), SMOOTHING_PX)
+    pixels = spread(pixels[spline.within(place_px)], most)
+    if len(pixels) < FEWEST_PIXELS:
+        return None
+    agreement = Agreement(patch.rays[:, pixels], grey[pixels], spline, other.carrier)
+    residual = agreement.predict(surface).residual
+    sigma = max(robust_scale(residual), LEAST_SIGMA)
+    image = np.full(patch.shape, np.nan)
+    image.ravel()[pixels] = np.where(np.abs(residual) < INLIER_SIGMA * sigma, residual, np.nan)
+    return Match(pixels, agreement, sigma, likeness_of(image))

@@ -1,0 +1,184 @@
+"""A shape fitted to matched depth, refined against the pictures that the depth comes from."""
+
+from dataclasses import dataclass, replace
+from operator import itemgetter
+
+import numpy as np
+
+from rotrecon.arrays import Floats, freeze
+from rotrecon.frame import Frame
+from rotrecon.photometry.carrying import carrier_of
+from rotrecon.photometry.climbing import DEPTH_SHARE, Climbed, climb, moved_px
+from rotrecon.photometry.drawn import drawn, half_width_px
+from rotrecon.photometry.matches import FEWEST_PIXELS, Other
+from rotrecon.photometry.scanning import TILTS_RAD, scanned
+from rotrecon.photometry.sharpening import sharpened
+from rotrecon.photometry.sureness import covariance_of
+from rotrecon.photometry.visible import clear_of
+from rotrecon.rays.correlation import Likeness
+from rotrecon.rays.hypotheses import Held, Scene
+from rotrecon.rays.ray_fit import RayFit, Sight, predicted
+from rotrecon.rays.robust import PARAMETERS, Ranked
+from rotrecon.rays.surfaces import Ball, Surface
+from rotrecon.sections.radii import Shape
+from rotrecon.turned.turned import Turned
+
+SHARP_SHARE = 0.3
+"""Of the pixels that a fit rests on, how many must have a depth from the pictures to take their place."""
+FARTHEST_PX = 4.0
+"""Pictures are matched to a fraction of a pixel; a surface that moves by more has lost its way."""
+AGREEING_SHARE = 0.75
+"""Of the pixels, how many must agree in brightness for a surface to be where it is said to be."""
+UNSURE = 0.1
+"""Standard error of the radius over the radius of a fit that is no start."""
+DRAWN_SHARE, DRAWN_PX = 0.12, 2.5
+"""Half widths may be off the drawing's by this share or so many px before other starts are tried."""
+TEXTURED = 0.3
+"""Of an object's pixels, how many must have a depth from the pictures for these to say what shape it has."""
+UNTEXTURED_DOUBT, UNTEXTURED_BALL_DOUBT, FULLY_TEXTURED = 0.015, 0.03, 0.5
+"""Standard error of the radius, over the radius, that outline and shading of a plain object leave, and shading alone
+that of a ball; and the share of textured pixels at which nothing of it is left."""
+LEAST_CORRELATION = 0.5
+"""Of two pictures over a surface that is where they agree best; less is none that they show."""
+
+
+@dataclass(frozen=True, eq=False)
+class Refinement:
+    """A shape as the pictures have it."""
+
+    shape: Ranked
+    """Its fit's pixels are those whose depth the pictures tell, if there are enough."""
+    depth_m: Floats
+    """(N,) of the patch: what the pictures tell where they do, what was matched elsewhere."""
+    climbed: Climbed
+    textured: float
+    """Share of its pixels at which the pictures tell a depth."""
+    by_depth: bool
+    """Whether matched depth was its start."""
+    trusted: bool
+    """Whether nothing speaks for another start."""
+
+    def __post_init__(self) -> None:
+        freeze(self)
+
+    @property
+    def doubts(self) -> tuple[str, ...]:
+        """Why no tool should rely on it."""
+        if self.textured > TEXTURED or (self.by_depth and self.climbed.by_depth > DEPTH_SHARE):
+            return ()
+        return (
+            "hardly any texture is seen on the object, so that its size rests on its outline and its shading alone; "
+            "light it better, or bring the camera nearer",
+        )
+
+
+def others_of(frame: Frame) -> tuple[Other, ...]:
+    """All views of a frame but the reference."""
+    return tuple(Other(view, carrier_of(view, frame.T_base_camera)) for view in frame.views[1:])
+
+
+def refined(one: Ranked, scene: Scene, others: tuple[Other, ...]) -> Refinement | None:
+    """A shape fitted to matched depth, refined against other views.
+
+    None where neither texture nor outlines hold the surface, and for a general surface of revolution.
+    """
+    fit = one.fit
+    if not others or fit is None or isinstance(fit.surface, Turned):
+        return None
+    climbed = climb(fit.surface, fit.free, fit.sigma, scene, others)
+    if climbed is None or not moved_px(fit.surface, climbed.surface, scene.patch, others) < FARTHEST_PX:
+        return None
+    refinement = _finished(one, fit, climbed, scene, by_depth=True)
+    half_px = climbed.surface.size_m / float(climbed.surface.center_m[2]) * scene.patch.focal_px
+    drawn_px = half_width_px(scene.segments, round_=one.shape == "sphere")
+    as_drawn = abs(half_px - drawn_px) < max(DRAWN_SHARE * drawn_px, DRAWN_PX)
+    sure = float(np.sqrt(fit.covariance.diagonal()[_size_of(fit)])) < UNSURE * fit.surface.size_m
+    trusted = climbed.agreeing > AGREEING_SHARE and climbed.by_depth > DEPTH_SHARE and sure and as_drawn
+    return replace(refinement, trusted=trusted)
+
+
+def sought(scene: Scene, held: Held, like: RayFit, others: tuple[Other, ...]) -> tuple[Refinement, ...]:
+    """The shapes that the drawing and the pictures alone speak for, whatever depth was matched.
+
+    `like` is a fit to that depth, which says how rough it is.
+    """
+    known = scene.patch.depth_m[scene.patch.drawn]
+    distance_m = float(np.nanmedian(known)) if np.isfinite(known).any() else 1.0
+    found: list[Refinement] = []
+    shapes: tuple[Shape, ...] = ("cylinder", "cone", "sphere")
+    for shape in shapes:
+        start = held.limiting(drawn(shape, scene.patch, scene.segments, distance_m))
+        tilts = np.zeros(1) if shape == "sphere" or held.direction is not None else TILTS_RAD
+        start, alike = scanned(start, scene.patch, clear_of(start, scene.patch), others[0], tilts)
+        if alike < LEAST_CORRELATION:
+            continue
+        climbed = climb(start, held.free(start), like.sigma, scene, others)
+        if climbed is not None:
+            base = replace(like, free=climbed.free, outlines=())
+            one = Ranked(shape, climbed.surface, base, 0.0)
+            found.append(_finished(one, base, climbed, scene, by_depth=False))
+    return tuple(found)
+
+
+def weighed(found: tuple[Refinement, ...]) -> tuple[Refinement, ...]:
+    """Refinements with what the pictures have against each, the best first, and no shape twice.
+
+    All are compared with the pixels, or without texture the edges too, of the one that explains most of its own.
+    """
+    matches = [match for one in found for match in one.climbed.matches]
+    if not matches:
+        return ()
+    clearest = min(matches, key=lambda match: match.sigma)
+    share = clearest.likeness.independent_share
+    count = max(share * len(clearest.pixels), 2.0)
+    # what looks like an edge may be a pattern's; texture does not lie
+    by_edges = max(one.textured for one in found) < TEXTURED
+
+    def credit(of: Refinement, surface: Surface) -> float:
+        return of.climbed.credit(surface, clearest.sigma, share, by_edges=by_edges)
+
+    lead = max(found, key=lambda one: credit(one, one.climbed.surface))
+    costs = [PARAMETERS[_shape(one)] / 2 * np.log(count) - credit(lead, one.climbed.surface) for one in found]
+    best: dict[Shape, Refinement] = {}
+    for cost, one in sorted(zip(costs, found, strict=True), key=itemgetter(0)):
+        ranked = replace(one.shape, cost=float(cost - min(costs)))
+        best.setdefault(_shape(one), replace(one, shape=ranked))
+    return tuple(best.values())
+
+
+def _size_of(fit: RayFit) -> int:
+    """Place of the radius among the parameters."""
+    return 3 if len(fit.free) == 4 else 4
+
+
+def _shape(one: Refinement) -> Shape:
+    shape = one.shape.shape
+    assert shape != "revolution"
+    return shape
+
+
+def _finished(one: Ranked, fit: RayFit, climbed: Climbed, scene: Scene, *, by_depth: bool) -> Refinement:
+    """What is known once a surface has come to its end, from where matched depth has it or from elsewhere."""
+    patch, surface = scene.patch, climbed.surface
+    covariance = covariance_of(surface, climbed.matches, climbed.edges, climbed.free, patch.shape)
+    depth_m, known, agreeing = sharpened(surface, patch, climbed.pixels, climbed.matches)
+    textured = float(known.sum() / max(climbed.pixels.sum(), 1))
+    if not by_depth:
+        # what was matched is known to be wrong; without texture, what agrees is where the surface says it is
+        trace = surface.trace(patch.rays)
+        there = known if textured > TEXTURED else known | agreeing
+        depth_m = np.where(there & ~known, trace.depth_m, np.where(trace.hit & ~known, np.nan, depth_m))
+        fit = replace(fit, pixels=np.flatnonzero(there).astype(np.int32), sigma=1.0, likeness=Likeness(0.0, 0.0))
+    pixels, sight = fit.pixels, fit.sight
+    if known.sum() > max(SHARP_SHARE * len(pixels), FEWEST_PIXELS):
+        pixels = np.flatnonzero(known).astype(np.int32)
+        sight = Sight(guard=float(np.percentile(surface.off_middle(patch.rays[:, pixels]), 95)))
+    if not by_depth:
+        size = _size_of(fit)
+        doubt = UNTEXTURED_BALL_DOUBT if isinstance(surface, Ball) else UNTEXTURED_DOUBT
+        left_m = doubt * max(1.0 - textured / FULLY_TEXTURED, 0.0) * surface.size_m
+        covariance[size, size] += left_m**2 * climbed.free[size]
+    residual = predicted(replace(patch, depth_m=depth_m), pixels, surface, sight).residual
+    told = {"own_covariance": lambda: covariance, "doubt": 0.0}
+    better = replace(fit, surface=surface, pixels=pixels, sight=sight, residual=residual, **told)
+    return Refinement(replace(one, surface=surface, fit=better), depth_m, climbed, textured, by_depth, trusted=False)

@@ -1,0 +1,54 @@
+"""Depth where the pictures have texture, finer than a matcher has it: what is left to agree on, pixel by pixel."""
+
+import cv2
+import numpy as np
+
+from rotrecon.arrays import Bools, Floats
+from rotrecon.photometry.matches import SMOOTHING_PX, Match
+from rotrecon.rays.fitting import tukey
+from rotrecon.rays.patch import Patch
+from rotrecon.rays.surfaces import Surface
+
+WINDOW_PX = 3.0
+"""Standard deviation of the window: half as wide as that of a matcher, and smooth."""
+TEXTURE_OVER_NOISE = 4.0
+"""Least energy of a window's derivatives over that of noise alone: noise that passes for texture pulls depth toward the
+surface, by one part in so many."""
+BELIEVED = 0.7
+"""Least share of a window's weight that the surface and its correction explain; less is something else."""
+MOST_PX = 0.75
+"""Largest correction: pictures are linear in a shift of less than the width of their texture."""
+
+
+def sharpened(surface: Surface, patch: Patch, among: Bools, matches: tuple[Match, ...]) -> tuple[Floats, Bools, Bools]:
+    """Depth (N,) of a patch as the pictures have it near a surface, and for which of some pixels (N,) they have it.
+
+    Then those (N,) that agree with the surface itself, though they may have no texture to tell it from others.
+
+    One step of Lucas and Kanade (1981) from the surface's own prediction, over all views at once.
+    """
+    pull, hold, noise, believed, seen = np.zeros((5, *patch.shape))
+    for match in matches:
+        change = match.agreement.along_rays(surface)
+        scaled, slope = change.residual / match.sigma, change.by_depth / match.sigma
+        weight = tukey(scaled)[1]
+        # a difference of two pictures has twice the noise of either; for that of its derivative see `SMOOTHING_PX`
+        of_noise = weight * np.square(change.px_by_depth / SMOOTHING_PX) / 4.0
+        sums = (weight * slope * scaled, weight * slope**2, of_noise, weight, np.ones(len(weight)))
+        for image, values in zip((pull, hold, noise, believed, seen), sums, strict=True):
+            image += _windowed(values, match, patch.shape)
+    agree = (believed > BELIEVED * seen) & (noise > 0)
+    textured = agree & (hold > TEXTURE_OVER_NOISE * noise)
+    noise, hold, believed = (np.where(textured, image, 1.0) for image in (noise, hold, believed))
+    step_m = pull / (hold - np.minimum(noise, hold / TEXTURE_OVER_NOISE))
+    step_px = np.abs(step_m) * 2.0 * SMOOTHING_PX * np.sqrt(noise / believed)
+    known = among & (textured & (step_px < MOST_PX)).ravel()
+    depth_m = np.where(known, surface.trace(patch.rays).depth_m + step_m.ravel(), patch.depth_m)
+    return depth_m, known, among & agree.ravel()
+
+
+def _windowed(values: Floats, match: Match, shape: tuple[int, int]) -> Floats:
+    """Means (h, w) over the window of values (n,) of the pixels of a match."""
+    image = np.zeros(shape)
+    image.ravel()[match.pixels] = values
+    return np.asarray(cv2.GaussianBlur(image, (0, 0), WINDOW_PX, borderType=cv2.BORDER_CONSTANT), dtype=np.float64)

@@ -1,0 +1,93 @@
+"""How sure a surface is that was fitted to several pictures and to outlines in them."""
+
+from collections.abc import Sequence
+
+import numpy as np
+
+from rotrecon.arrays import Bools, Floats
+from rotrecon.photometry.matches import Match
+from rotrecon.photometry.outlines import Edge
+from rotrecon.rays.fitting import TUKEY, tukey
+from rotrecon.rays.surfaces import Surface
+
+SYSTEMATIC_PX = 0.008
+"""What splines, aliasing and a lens shift one picture against the other by, alike over a part of the object."""
+EDGE_PX = 0.05
+"""What shading and blur move all edges of an object by, the same way in all pictures."""
+PARTS = 4
+"""Parts, along each side of the patch, over which that is alike."""
+
+
+def covariance_of(
+    surface: Surface, matches: tuple[Match, ...], edges: Sequence[Edge], free: Bools, shape: tuple[int, int]
+) -> Floats:
+    """Covariance (k, k) H^-1 M H^-1 of errors that are alike (Huber 1967), zero for what is not `free` (k,).
+
+    H is the information that all measurements were weighted with. M is the variance of its gradient: J C J' of the
+    pixels, C being the autocorrelation of their residuals; views share the reference picture's noise, so that their
+    residuals are alike too; and of a systematic shift of parts of the picture. Edges, whose share is known, have their
+    information as variance, and that of a shift of all of them outward. `shape` is the patch's.
+    """
+    count = len(free)
+    information, variance = np.zeros((count, count)), np.zeros((count, count))
+    scaled: list[Floats] = []
+    columns: list[Floats] = []
+    for match in matches:
+        prediction = match.agreement.predict(surface)
+        residual, share = prediction.residual / match.sigma, match.likeness.independent_share
+        weight = tukey(residual)[1]
+        believed = weight > 0
+        response = float(_response(residual[believed]).mean())
+        own = prediction.columns * believed / match.sigma
+        information += share * response * (own @ own.T)
+        scaled.append(_placed(weight * residual, match, shape))
+        columns.append(np.stack([_placed(share * column, match, shape) for column in own]))
+        shifts = SYSTEMATIC_PX * share * _by_part(own * _texture(match, surface) / match.sigma, match, shape)
+        variance += shifts @ shifts.T
+    for first, pull in enumerate(scaled):
+        smeared = np.stack([matches[first].likeness.smeared(column) for column in columns[first]])
+        smeared = smeared.reshape(count, -1)
+        for second, other in enumerate(scaled):
+            together = (pull != 0) & (other != 0)
+            alike = float((pull * other)[together].mean()) if together.any() else 0.0
+            variance += alike * (columns[second].reshape(count, -1) @ smeared.T)
+    outward = np.zeros(count)
+    for edge in edges:
+        prediction = edge.predict(surface)
+        weighted = prediction.columns * tukey(prediction.residual)[1]
+        own = weighted @ prediction.columns.T
+        information += own
+        variance += own
+        outward += EDGE_PX * weighted @ (1.0 / edge.sigma_px)
+    variance += np.outer(outward, outward)
+    covariance = np.zeros((count, count))
+    kept = np.ix_(free, free)
+    inverse = np.linalg.pinv(information[kept], hermitian=True)
+    covariance[kept] = inverse @ ((variance + variance.T) / 2)[kept] @ inverse
+    return covariance
+
+
+def _texture(match: Match, surface: Surface) -> Floats:
+    """Change (N,) of the predicted grey values with a shift of the other picture, a pixel."""
+    change = match.agreement.along_rays(surface)
+    return change.by_depth / np.maximum(change.px_by_depth, 1e-12)
+
+
+def _by_part(columns: Floats, match: Match, shape: tuple[int, int]) -> Floats:
+    """Sums (k, P) over the parts of the patch of columns (k, N)."""
+    row, column = np.divmod(match.pixels, shape[1])
+    part = row * PARTS // shape[0] * PARTS + column * PARTS // shape[1]
+    return np.stack([np.bincount(part, one, PARTS**2).astype(np.float64) for one in columns])
+
+
+def _placed(values: Floats, match: Match, shape: tuple[int, int]) -> Floats:
+    """Values (N,) of the pixels of a match as an image."""
+    image = np.zeros(shape)
+    image.ravel()[match.pixels] = values
+    return image
+
+
+def _response(residual: Floats) -> Floats:
+    """Derivative (N,) of a residual's pull by the residual, both in sigmas (of Tukey's loss)."""
+    squared = np.square(residual / TUKEY)
+    return (1.0 - squared) * (1.0 - 5.0 * squared)

@@ -1,0 +1,77 @@
+"""Which pixels of the reference picture show a surface that another camera sees as well."""
+
+import cv2
+import numpy as np
+
+from rotrecon.arrays import Bools, Floats
+from rotrecon.photometry.carrying import Carrier
+from rotrecon.rays.patch import Patch
+from rotrecon.rays.surfaces import Lateral, Rays, Surface
+
+GUARD_PX = 2.0
+"""Distance from the outline in either picture: blur and splines mix what is behind into pixels that are nearer."""
+STEEPEST = float(np.cos(np.deg2rad(70.0)))
+"""Least cosine of incidence: beyond, a pixel of one picture is spread over several of the other."""
+AGREES_SIGMA, AGREES_RADIUS = 4.0, 0.1
+"""Matched depth agrees with a surface within so many sigma, or this share of the radius."""
+ROUND_ABOUT_PX = 9
+"""Side of the window of which half the known depths must agree: they are rough, and full of holes."""
+
+
+def clear_of(surface: Surface, patch: Patch) -> Bools:
+    """(N,) drawn pixels of a patch at which a surface would be seen, clear of its outline."""
+    drawn = np.flatnonzero(patch.drawn)
+    rays = patch.rays[:, drawn]
+    trace = surface.trace(rays)
+    clear = trace.hit & (trace.depth_m > 0) & _faces(surface, rays * trace.depth_m, np.zeros(3))
+    result = np.zeros(len(patch.drawn), dtype=np.bool_)
+    result[drawn] = clear & _inside(surface, rays, patch.focal_px)
+    return result
+
+
+def shown(surface: Surface, patch: Patch, clear: Bools, sigma: float) -> Bools:
+    """Those of some pixels (N,) of a patch round which matched depth of a sigma agrees with a surface."""
+    depth_m = surface.trace(patch.rays).depth_m
+    limit_m = np.maximum(AGREES_SIGMA * sigma * patch.noise.sigma_m(depth_m), AGREES_RADIUS * surface.size_m)
+    known, near = np.isfinite(patch.depth_m), np.abs(patch.depth_m - depth_m) < limit_m
+    return clear & (_summed(near & patch.drawn, patch.shape) >= 0.5 * _summed(known & patch.drawn, patch.shape))
+
+
+def seen_too(surface: Surface, rays: Rays, carrier: Carrier) -> Bools:
+    """(N,) which of the points where rays meet a surface another camera sees clear of its outline there."""
+    points = rays * surface.trace(rays).depth_m
+    carried = carrier.T_view_reference[:3, :3] @ points + carrier.T_view_reference[:3, 3:]
+    ahead = carried[2] > 0
+    rays_there = carried / np.where(ahead, carried[2], 1.0)
+    inside = _inside(carrier.surface(surface), rays_there, carrier.camera.focal_px)
+    return ahead & inside & _faces(surface, points, carrier.center_m)
+
+
+def _faces(surface: Surface, points: Floats, camera_m: Floats) -> Bools:
+    """Which points (3, N) of a surface are seen at no steep incidence from a camera at (3,)."""
+    offset = points - surface.center_m[:, None]
+    if isinstance(surface, Lateral):
+        x, y, height = surface.turn @ offset
+        outward = surface.turn.T @ np.stack([x, y, -surface.slope * (surface.radius_m + surface.slope * height)])
+    else:
+        outward = offset
+    toward = camera_m[:, None] - points
+    size = np.sqrt((outward**2).sum(axis=0) * (toward**2).sum(axis=0))
+    return -surface.side * (outward * toward).sum(axis=0) > STEEPEST * size
+
+
+def _inside(surface: Surface, rays: Rays, focal_px: float) -> Bools:
+    """Which rays pass inside an outline by more than the guard; all for a surface seen from inside."""
+    if surface.side > 0:
+        return np.ones(len(rays[0]), dtype=np.bool_)
+    tangency = surface.tangency(rays)
+    return tangency.gap_m * focal_px < -GUARD_PX * np.abs(tangency.depth_m)
+
+
+def _summed(which: Bools, shape: tuple[int, int]) -> Floats:
+    """Numbers (N,) of pixels of which something holds, in the window round each."""
+    image: Floats = which.reshape(shape).astype(np.float64)
+    side = (ROUND_ABOUT_PX, ROUND_ABOUT_PX)
+    summed: Floats = np.empty(shape)
+    cv2.boxFilter(image, -1, side, summed, normalize=False, borderType=cv2.BORDER_CONSTANT)
+    return np.ravel(summed)
