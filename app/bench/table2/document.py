@@ -1,5 +1,7 @@
 """docs/table2.md: the paper's table 2 beside what two and four rendered pictures give."""
 
+from itertools import product
+
 import numpy as np
 
 from app.bench.accuracy.goals import Goal, goal_table, mark, number, share
@@ -41,7 +43,7 @@ def table2_document(plan: Plan | None = None, processes: int | None = None) -> s
     found = trials(plan, processes)
     sizes, goals = _sizes(found, plan)
     plain, plain_goals = _plain(found, plan)
-    goals += [*_intervals(found, plan), *plain_goals]
+    goals += [*_intervals(found), *plain_goals]
     parts = [_summary(goals), _experiment(found, plan), _introduction(plan), sizes, plain, _refusals(found)]
     return wrapped("\n\n".join(parts)) + "\n"
 
@@ -117,7 +119,7 @@ def _values(name: str, outcomes: list[Outcome]) -> tuple[Floats, Coverage]:
 def _sizes(found: list[Trial], plan: Plan) -> tuple[str, list[Goal]]:
     rows: list[tuple[str, ...]] = []
     goals: list[Goal] = []
-    for name, method, views in ((n, m, v) for n in plan.objects for m in plan.methods for v in plan.view_counts):
+    for name, method, views in product(plan.objects, plan.methods, plan.view_counts):
         outcomes = chosen(found, name, TEXTURED, views, method)
         values, covered = _values(name, outcomes)
         size, median = (
@@ -146,7 +148,7 @@ def _sizes(found: list[Trial], plan: Plan) -> tuple[str, list[Goal]]:
     return f"## Sizes\n\n{table(header, rows)}", goals
 
 
-def _intervals(found: list[Trial], plan: Plan) -> list[Goal]:
+def _intervals(found: list[Trial]) -> list[Goal]:
     """Coverage and refusals, pooled over all textured objects."""
     goals: list[Goal] = []
     every = [trial.outcome for trial in found if trial.method == "robust" and trial.texture in TEXTURED]
@@ -163,7 +165,7 @@ def _intervals(found: list[Trial], plan: Plan) -> list[Goal]:
 def _plain(found: list[Trial], plan: Plan) -> tuple[str, list[Goal]]:
     rows: list[tuple[str, ...]] = []
     wrong = 0
-    for name, views in ((n, v) for n in PLAIN_OBJECTS if n in plan.objects for v in plan.view_counts):
+    for name, views in product([name for name in PLAIN_OBJECTS if name in plan.objects], plan.view_counts):
         outcomes = chosen(found, name, PLAIN, views, "robust")
         values, covered = _values(name, outcomes)
         off = int((np.abs(values) > PLAIN_PERCENT / 100).sum())
