@@ -43,8 +43,8 @@ def failure_of(chosen: Ranked, soundness: Soundness, scene: Scene, settings: Set
         return None
     if failure is not None and failure.reason == FailureReason.CONSTRAINED:
         return failure
-    depth_m = float(np.nanmedian(scene.depth_m))
-    if shows_two(scene.depth_m, depth_m / scene.patch.focal_px):
+    known_m = scene.depth_m[np.isfinite(scene.depth_m)]
+    if len(known_m) and shows_two(scene.depth_m, float(np.median(known_m)) / scene.patch.focal_px):
         advice = "two things stand side by side in what is drawn; draw the area round one of them"
         return FitFailure(FailureReason.TWO_OBJECTS, advice)
     return failure

@@ -24,6 +24,7 @@ class FailureReason(StrEnum):
     TWO_OBJECTS = "two_objects"
     OFF_AXIS = "off_axis"
     CONSTRAINED = "constrained"
+    UNTEXTURED = "untextured"
 
 
 @dataclass(frozen=True)
