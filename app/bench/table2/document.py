@@ -16,7 +16,18 @@ from app.bench.accuracy.statistics import (
     refused_share,
 )
 from app.bench.table import NONE, table, wrapped
-from app.bench.table2.trials import AROUND_PX, BASELINES_M, PLAIN, TEXTURED, Plan, Trial, chosen, trials
+from app.bench.table2.trials import (
+    AROUND_PX,
+    BASELINES_M,
+    PLAIN,
+    PLAIN_OBJECTS,
+    PLAIN_POSES,
+    TEXTURED,
+    Plan,
+    Trial,
+    chosen,
+    trials,
+)
 from rotrecon.arrays import Floats
 from rotrecon.settings import Method
 from rotrecon.simulation.flaws import Flaws
@@ -34,7 +45,6 @@ MOST_REFUSED = 0.03
 COVERED = (0.90, 0.98)
 PLAIN_PERCENT = 3.0
 """Off at most, of one-coloured objects, or refused, or not certain."""
-PLAIN_OBJECTS = ("wire", "leg", "pipe")
 
 
 def table2_document(plan: Plan | None = None, processes: int | None = None) -> str:
@@ -103,7 +113,7 @@ def _introduction(plan: Plan) -> str:
   {AROUND_PX:g} px of the object is rendered.
 - **Scenes**: {plan.poses} poses of each object with each texture, seeds {plan.first_seed} to
   {plan.first_seed + plan.poses - 1}, on which nothing was tuned; {DISTANCE_M[0]} to {DISTANCE_M[1]} m away, in front of
-  a wall. Textures are fine, coarse, weak, and plain: one colour, only shading and an edge.
+  a wall. Textures are fine, coarse and weak; {PLAIN_POSES} poses more are plain: one colour, only shading and an edge.
 - **The whole path**: the pictures and the poses are all that is given. The area is drawn with every corner and both
   ends of the stroke moved by 3 px at random, the kind is not told. Every method measures the same matched depth;
   `robust` then goes back to the pictures.
