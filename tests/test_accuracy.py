@@ -54,7 +54,12 @@ def test_correlated_noise_stays_within_its_limit(found, name, cell):
 
 
 def test_intervals_hold_the_truth(found):
-    pooled = [trial.outcome for name in TRUE_KINDS for noise in NOISES for trial in found.of_noise(name, noise, METHOD)]
+    pooled = [
+        trial.outcome
+        for name in TRUE_KINDS
+        for noise in NOISES.values()
+        for trial in found.of_noise(name, noise, METHOD)
+    ]
     assert radius_coverage(pooled).count == sum(not outcome.refused for outcome in pooled)
     assert radius_coverage(pooled).covered >= COVERED
 

@@ -1,7 +1,6 @@
 """The tables of what the program says of its own answers: intervals, kinds, and how a bad drawing moves them."""
 
 from collections.abc import Sequence
-from typing import get_args
 
 import numpy as np
 
@@ -17,17 +16,22 @@ COVERED = (0.90, 0.98)
 REFUSED = 0.02
 WIDE = 1.5
 CERTAIN = 0.9
-NOISES: tuple[NoiseKind, ...] = get_args(NoiseKind)
+NOISES: dict[str, tuple[NoiseKind, ...]] = {
+    "white": ("white",),
+    "correlated": ("length", "box"),
+    "matched": ("matched",),
+}
+"""Kinds of noise that are pooled."""
 
 
 def coverage_table(found: Found, plan: Plan) -> tuple[str, list[Goal]]:
     """How often intervals hold the truth, pooled per object and kind of noise."""
     rows: list[tuple[str, ...]] = []
     goals: list[Goal] = []
-    for noise in NOISES:
+    for noise, kinds in NOISES.items():
         met: list[str] = []
         for name in plan.objects:
-            outcomes = [trial.outcome for trial in found.of_noise(name, noise, plan.method)]
+            outcomes = [trial.outcome for trial in found.of_noise(name, kinds, plan.method)]
             pooled = [("diameter", radius_coverage(outcomes))]
             if name == "cone":
                 pooled.append(("half angle", half_angle_coverage(outcomes)))
@@ -45,12 +49,12 @@ def coverage_table(found: Found, plan: Plan) -> tuple[str, list[Goal]]:
 def recognition_table(found: Found, plan: Plan) -> tuple[str, list[Goal]]:
     """What kinds were stated, and how many of those that were certain are wrong."""
     rows: list[tuple[str, ...]] = []
-    totals: dict[NoiseKind, list[Outcome]] = {noise: [] for noise in NOISES}
+    totals: dict[str, list[Outcome]] = {noise: [] for noise in NOISES}
     wrong = dict.fromkeys(NOISES, 0)
     sure = dict.fromkeys(NOISES, 0)
-    for noise in NOISES:
+    for noise, kinds in NOISES.items():
         for name in plan.objects:
-            outcomes = [trial.outcome for trial in found.of_noise(name, noise, plan.method)]
+            outcomes = [trial.outcome for trial in found.of_noise(name, kinds, plan.method)]
             certain = [outcome for outcome in outcomes if outcome.certain]
             right = sum(outcome.kind == TRUE_KINDS[name] for outcome in outcomes) / len(outcomes)
             mistaken = [outcome.kind or "none" for outcome in certain if outcome.kind != TRUE_KINDS[name]]

@@ -40,7 +40,7 @@ class Extent:
 
 
 def accuracy_document(recordings: Path | None = None, extent: Extent | None = None) -> str:
-    """The document; 20 minutes of work unless a smaller extent is named.
+    """The document; most of an hour of work on two cores unless a smaller extent is named.
 
     Raises SceneError for a recording that the folder has not, and PeerMissing for a package that is not installed.
     """
@@ -104,7 +104,7 @@ def _introduction(plan: Plan) -> str:
 - **Correlated noise** has a standard deviation of {MATCHED.disparity_sigma_px} px. "A kernel of {KERNEL_PX} px" can be
   read in two ways: `length` has an autocorrelation of exp(-(lag / {KERNEL_PX} px)^2), `box` is white noise averaged
   over {KERNEL_PX} x {KERNEL_PX} px. The whole view has depth. `matched` is the simulator's full model. Each pose is
-  drawn and measured {plan.draws} times where noise is correlated, every time with other noise and another drawing.
+  drawn and measured {plan.draws} times with `length` and with `box`, every time with other noise and another drawing.
 - **Drawing**: an ideal operator's, every corner and both ends of the stroke moved by 3 px at random; the kind is not
   told. Whatever kind the answer has, its radius is compared with the true one; a cone's in the middle of its pixels,
   and what its interval is worth where the answer itself has its middle.

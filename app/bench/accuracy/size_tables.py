@@ -57,7 +57,7 @@ def white_tables(found: Found, plan: Plan) -> tuple[str, list[Goal]]:
     goals = [_white_goal(name, values) for name, values in ratios.items()]
     return "\n\n".join(blocks), [
         *goals,
-        _failure_goal([trial for name in plan.objects for trial in found.of_noise(name, "white", plan.method)]),
+        _failure_goal([trial for name in plan.objects for trial in found.of_noise(name, ("white",), plan.method)]),
     ]
 
 

@@ -54,6 +54,7 @@ def rms_percent(values: Sequence[float]) -> float:
 
 def coverage(values: Floats, intervals: Floats) -> Coverage:
     """Of relative errors (N,) and their intervals (N, 2), both less the truth."""
+    intervals = intervals.reshape(-1, 2)
     given = np.isfinite(intervals).all(axis=1)
     low, high = intervals[given].T
     if not given.any():
@@ -89,7 +90,7 @@ def half_angle_coverage(outcomes: Sequence[Outcome]) -> Coverage:
 
 def refused_share(outcomes: Sequence[Outcome]) -> float:
     """Share without a size."""
-    return float(np.mean([outcome.refused for outcome in outcomes]))
+    return float(np.mean([outcome.refused for outcome in outcomes])) if outcomes else np.nan
 
 
 def far_off_count(outcomes: Sequence[Outcome]) -> int:

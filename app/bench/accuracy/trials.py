@@ -20,8 +20,8 @@ from rotrecon.settings import Method
 
 POSES = 200
 """Of each object."""
-DRAWS = 3
-"""Noises and drawings of each pose where noise is correlated: intervals of 600 clouds of every object."""
+DRAWS = 2
+"""Noises and drawings of each pose where noise is correlated: intervals of 800 clouds of every object."""
 METHOD: Method = "robust"
 """The one whose accuracy is asked for."""
 PEER_POSES = 10
@@ -58,10 +58,12 @@ class Found:
         """Those of one object in one cell by one method."""
         return self._trials.get((object_name, cell, method), [])
 
-    def of_noise(self, object_name: str, noise: NoiseKind, method: str) -> list[Trial]:
-        """Those of one object with one kind of noise by one method."""
-        wanted = (object_name, noise, method)
-        parts = [part for (name, cell, by), part in self._trials.items() if (name, cell.noise, by) == wanted]
+    def of_noise(self, object_name: str, noises: tuple[NoiseKind, ...], method: str) -> list[Trial]:
+        """Those of one object with some kinds of noise by one method."""
+        wanted = (object_name, method)
+        parts = [
+            part for (name, cell, by), part in self._trials.items() if (name, by) == wanted and cell.noise in noises
+        ]
         return [trial for part in parts for trial in part]
 
 
@@ -83,7 +85,7 @@ class Plan:
 
     def draws_of(self, cell: Cell) -> int:
         """How often a pose is measured in a cell."""
-        return 1 if cell.noise == "white" else self.draws
+        return self.draws if cell.noise in ("length", "box") else 1
 
     def others(self, cell: Cell, seed: int) -> dict[str, Callable[[Cloud], Outcome | None]]:
         """The methods that stand beside the one that is asked for, on a pose's first cloud."""

@@ -136,7 +136,7 @@ def _sizes(found: list[Trial], plan: Plan) -> tuple[str, list[Goal]]:
             errors(values),
             100 * float(np.nanmedian(np.abs(values))) if np.isfinite(values).any() else np.nan,
         )
-        right = float(np.mean([outcome.kind == TRUE_KINDS[name] for outcome in outcomes]))
+        right = sum(outcome.kind == TRUE_KINDS[name] for outcome in outcomes) / max(len(outcomes), 1)
         met = ""
         if method == "robust":
             factor = 1.0 if views == 2 else FOUR_OVER_TWO
