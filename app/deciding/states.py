@@ -1,6 +1,6 @@
 """What the decision is made of: who is in control, which frame is held, what is proposed, and how far it has got."""
 
-from dataclasses import dataclass
+from dataclasses import dataclass, field
 from typing import Literal
 
 from app.deciding.settings import DecisionSettings
@@ -143,7 +143,7 @@ class Said:
 class Deciding:
     """The decision as it stands. All times are those of the events, in seconds."""
 
-    settings: DecisionSettings = DecisionSettings()
+    settings: DecisionSettings = field(default_factory=DecisionSettings)
     control: Control = Control()
     watched: Watched | None = None
     """The frame that is held."""
