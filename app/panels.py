@@ -28,7 +28,7 @@ from app.static_files import static_text
 from rotrecon.primitives import KINDS
 
 PANEL_WIDTH_PX = 390
-TABS = ("Sections", "Picture", "Why", "Buttons", "Help")
+TABS = ("Decision", "Sections", "Picture", "Why", "Buttons", "Help")
 AUTO = "auto"
 KNOWN = "What is known"
 DIRECTIONS = {name: DirectionChosen(direction) for direction, name in DIRECTION_NAMES.items()}
@@ -78,7 +78,7 @@ class Panels:
         self._add_buttons("View", VIEW)
         self._add_keys()
         panel = self._gui.add_panel()
-        self.sections, self.picture, why, draw, keys = (panel.add_tab(name) for name in TABS)
+        self.decision, self.sections, self.picture, why, draw, keys = (panel.add_tab(name) for name in TABS)
         with draw:
             self._add_controls()
         with why:

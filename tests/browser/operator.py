@@ -40,8 +40,15 @@ BACKDROP_LEVEL = 24
 class Operator:
     """A page in a browser, and the console behind it."""
 
-    def __init__(self, page: Page, console: Console, enter: Callable[[Page], object] | None = None) -> None:
-        """`enter` opens the page by another way than the console's own address."""
+    def __init__(
+        self,
+        page: Page,
+        console: Console,
+        enter: Callable[[Page], object] | None = None,
+        *,
+        takes_control: bool = True,
+    ) -> None:
+        """`enter` opens the page by another way than the console's own address; control is taken if nobody has it."""
         self.page, self.console = page, console
         page.set_default_timeout(1000 * TIMEOUT_S)
         known = set(console.pages)
@@ -54,6 +61,15 @@ class Operator:
         self._dismiss_software_notice()
         expect(page.get_by_test_id("hint")).to_be_visible()
         self.until(self._picture_in_place, "the picture is where it belongs")
+        if takes_control and console.session.decision.control.holder is None:
+            self.page.get_by_role("button", name="Take control").click()
+            self.until(lambda: self.in_control, "this page is in control")
+            self.settle()
+
+    @property
+    def in_control(self) -> bool:
+        """Whether this page may draw and decide."""
+        return self.console.session.decision.control.holder == self.client_id
 
     @property
     def view(self) -> PageView:
