@@ -5,11 +5,11 @@ import io
 import logging
 from collections.abc import Callable, Iterator
 from contextlib import contextmanager, redirect_stdout
-from dataclasses import dataclass
 
 from viser import CameraHandle, ClientHandle, ViserServer
 
 from app.clock import seconds, wall_s
+from app.console_items import CameraMoved, FromPage, Item, PageClosed, PageOpened, Stopped
 from app.deciding.events import (
     ClockTicked,
     DecisionEvent,
@@ -44,46 +44,6 @@ SOMEBODY = "operator"
 MOST_MEASUREMENTS = 2
 """Under way at once: the newest drawing need not wait for an older one, and a drag does not pile them up."""
 log = logging.getLogger(__name__)
-
-
-@dataclass(frozen=True)
-class PageOpened:
-    client: ClientHandle
-
-
-@dataclass(frozen=True)
-class PageClosed:
-    client_id: int
-
-
-@dataclass(frozen=True)
-class CameraMoved:
-    """A page's camera or canvas has changed; what is shown there may have to be fitted again."""
-
-
-@dataclass(frozen=True)
-class FromPage:
-    client_id: int
-    event: Event | DecisionEvent | PageEvent
-
-
-@dataclass(frozen=True)
-class Stopped:
-    """The console is to be closed; whatever else is on the queue is dropped."""
-
-
-Item = (
-    PageOpened
-    | PageClosed
-    | CameraMoved
-    | FromPage
-    | Reconstructed
-    | Proposable
-    | ClockTicked
-    | PicturesSent
-    | FrameArrived
-    | Stopped
-)
 
 
 class Console:

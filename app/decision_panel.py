@@ -96,8 +96,8 @@ class DecisionPanel:
 
     def _show_refusing(self, deciding: Deciding, case: Case | None) -> None:
         open_ = case is not None and not deciding.veiled and not isinstance(case.stage, Rejected)
-        for part in (self._reason, self._reject):
-            _set(part, "visible", open_)
+        _set(self._refusing, "visible", open_)
+        _set(self._reject, "visible", open_)
         choosing = open_ and case is not None and not isinstance(case.stage, Decided)
         for part in (self._tool, self._override):
             _set(part, "visible", choosing)
@@ -144,25 +144,24 @@ class DecisionPanel:
         )
 
     def _add_refusing(self) -> None:
-        self._reason = self._gui.add_text("Reason", "", visible=False, order=REFUSING)
-        self._reject = self._button(
-            "Reject, for that reason",
-            lambda at: RejectPressed(at, self._page, self._shown, self._reason.value),
-            REFUSING + STEP,
+        """Folded away, as it is the rarer way."""
+        self._refusing = self._gui.add_folder(
+            "Reject or override", visible=False, order=REFUSING, expand_by_default=False
         )
-        self._tool: GuiDropdownHandle[str] = self._gui.add_dropdown(
-            "Other tool", NOTHING, visible=False, order=REFUSING + 2 * STEP
-        )
-        self._override = self._button(
-            "Override, for that reason",
-            lambda at: OverrideTyped(at, self._page, self._shown, str(self._tool.value), self._reason.value),
-            REFUSING + 3 * STEP,
-        )
-        self._drop = self._button(
-            "Back to the proposed tool",
-            lambda at: OverrideDropped(at, self._page, self._shown),
-            REFUSING + 4 * STEP,
-        )
+        with self._refusing:
+            self._reason = self._gui.add_text("Reason", "", order=0)
+            self._reject = self._button(
+                "Reject, for that reason", lambda at: RejectPressed(at, self._page, self._shown, self._reason.value), 1
+            )
+            self._tool: GuiDropdownHandle[str] = self._gui.add_dropdown("Other tool", NOTHING, order=2)
+            self._override = self._button(
+                "Override, for that reason",
+                lambda at: OverrideTyped(at, self._page, self._shown, self._tool.value, self._reason.value),
+                3,
+            )
+            self._drop = self._button(
+                "Back to the proposed tool", lambda at: OverrideDropped(at, self._page, self._shown), 4
+            )
 
     def _button(
         self,

@@ -74,6 +74,11 @@ class Session:
         return self.measured.outcome
 
     @property
+    def proposal_told(self) -> bool:
+        """Whether the tool that fits may be named: its proposal is on disk."""
+        return self.decision.case is not None and self.decision.fault is None
+
+    @property
     def visible(self) -> "Session":
         """The session as pages may show it: without a result whose class the operator has to name first."""
         if self.measured is None or not self.decision.veiled:
