@@ -25,14 +25,15 @@ from app.decision_text import face
 from app.desk import Desk, Proposable
 from app.events import Event, Reconstructed
 from app.measuring import measure
+from app.newer_frames import facts_of, newer_facts
 from app.page import PageEvent
 from app.page_view import BRAND_COLOR, PageView
 from app.panels import Panels
 from app.pictures import Pictures
-from app.proposing import facts_of
 from app.record.store import Record
 from app.scene_view import SceneView
 from app.session import Done, Session, step
+from rotrecon.capture import Capture
 from rotrecon.drawing import Drawing
 from rotrecon.frame import Frame
 from rotrecon.settings import Settings
@@ -123,6 +124,12 @@ class Console:
         self._running.result()
         with redirect_stdout(io.StringIO()):
             self.server.stop()
+
+    def newer(self, capture: Capture) -> None:
+        """Watch over a capture that came after the frame that is held; of any thread."""
+        area = self.told.shown.area
+        event = FrameArrived(seconds(), *newer_facts(self.frame, capture, area))
+        self._loop.call_soon_threadsafe(self.post, event)
 
     def subscribe(self, changed: Callable[[], object]) -> Callable[[], object]:
         """Call `changed`, quickly done, after the session may have changed; returns what ends that. Of any thread."""

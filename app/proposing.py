@@ -1,13 +1,10 @@
 """What a measurement becomes: an offer that is bound to its evidence, and the entry that the record has of it."""
 
 from dataclasses import dataclass, replace
-from datetime import datetime
-from hashlib import sha256
 
 from app.clock import seconds
 from app.deciding.events import Offered, Unmeasured
 from app.deciding.states import Offer
-from app.deciding.watchdog import FrameFacts, Source
 from app.record.evidence import proposal
 from app.session import Session
 from rotrecon.drawing import Drawing
@@ -50,16 +47,3 @@ def offered(evidence: Evidence, who: str, frame: Frame, settings: Settings) -> O
         for_dangerous=frozenset(tool.name for tool in settings.tools if tool.dangerous_ok),
     )
     return Offered(seconds(), offer, entry)
-
-
-def facts_of(
-    frame: Frame, source: Source = "recorded", sequence: int | None = None, every_s: float | None = None
-) -> FrameFacts:
-    """What the watch over frames has to know of one; its pixels are its picture and its depths."""
-    digest = sha256(frame.image.tobytes())
-    digest.update(frame.points_m.tobytes())
-    return FrameFacts(digest.hexdigest(), source, sequence, _unix_s(frame.captured_at), every_s)
-
-
-def _unix_s(moment: datetime | None) -> float | None:
-    return None if moment is None else moment.timestamp()
