@@ -32,8 +32,9 @@ def serve(
 ) -> None:
     """Serve the console until interrupted; says where it is to be found, and how to get in.
 
-    Without a `record` nothing can be decided. Raises HostError, before anything is opened, for an address that cannot be listened on, is taken, or that others
-    can reach while users or TLS are missing; PeopleError for a file of users that cannot be used.
+    Without a `record` nothing can be decided. Raises HostError, before anything is opened, for an address that cannot
+    be listened on, is taken, or that others can reach while users or TLS are missing; PeopleError for a file of users
+    that cannot be used.
     """
     socket = listen(host, port, people, certificate)
     hidden = HiddenViser()

@@ -10,7 +10,9 @@ import numpy as np
 from playwright.sync_api import Page, expect
 from viser import transforms as tf
 
-from app.console import Console, FromPage
+from app.console import Console
+from app.console_items import FromPage
+from app.deciding.events import DecisionEvent
 from app.events import Event
 from app.object_drawing import Pixel
 from app.page_view import PageView
@@ -126,7 +128,7 @@ class Operator:
         """Click on a pixel of the frame."""
         self.page.mouse.click(*self.frame_to_screen(u, v))
 
-    def send(self, *events: Event) -> None:
+    def send(self, *events: Event | DecisionEvent) -> None:
         """Let events happen as if they had come from this page, for tests of what follows from them."""
         for event in events:
             self.console.server.get_event_loop().call_soon_threadsafe(
