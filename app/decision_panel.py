@@ -65,7 +65,7 @@ class DecisionPanel:
         _set(self._again, "visible", holds and recorded and stale)
         for part in (self._class, self._name):
             _set(part, "visible", holds and case is not None and deciding.veiled)
-        self._show_two(deciding, case if holds else None)
+        self._show_two(deciding, case if holds and not deciding.veiled else None)
         self._show_refusing(deciding, case if holds else None)
 
     def _show_control(self, deciding: Deciding) -> None:

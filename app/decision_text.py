@@ -4,7 +4,7 @@ from dataclasses import dataclass
 from html import escape
 from math import ceil
 
-from app.deciding.states import Armed, Case, Decided, Deciding, Proposed, Rejected, obstacles
+from app.deciding.states import Armed, Decided, Deciding, Proposed, Rejected, obstacles
 from app.deciding.watchdog import age_s
 from app.session import Session
 from app.wording import from_to
@@ -33,7 +33,7 @@ def face(deciding: Deciding) -> Face:
     """What there is to be seen; equal for two moments between which nothing has to be shown again."""
     asked = deciding.control.asked
     return Face(
-        state_name(deciding.case),
+        state_name(deciding),
         seconds_left(deciding),
         age_min(deciding),
         obstacles(deciding),
@@ -43,13 +43,14 @@ def face(deciding: Deciding) -> Face:
     )
 
 
-def state_name(case: Case | None) -> str:
-    """How far a proposal has got, in one word."""
-    match None if case is None else case.stage:
-        case None:
-            return "idle"
+def state_name(deciding: Deciding) -> str:
+    """How far a proposal has got, in a word or two; it does not say of one that is veiled whether there is a tool."""
+    case = deciding.case
+    if case is None:
+        return "idle"
+    match case.stage:
         case Proposed():
-            return "proposed" if case is not None and case.tool is not None else "no tool"
+            return "proposed" if case.tool is not None or deciding.veiled else "no tool"
         case Armed():
             return "armed"
         case Decided(how=how):
@@ -73,7 +74,7 @@ def age_min(deciding: Deciding) -> int | None:
 def decision_html(session: Session) -> str:
     """The tool, what speaks for it and against deciding, how far it has got, and who is in control."""
     deciding = session.decision
-    name, left = state_name(deciding.case), seconds_left(deciding)
+    name, left = state_name(deciding), seconds_left(deciding)
     countdown = "" if left is None else f'<b data-testid="countdown" class="rr-count">{left} s</b>'
     return (
         f'<div class="rr-decision" data-testid="decision" data-state="{name}">'

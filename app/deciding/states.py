@@ -180,11 +180,11 @@ def _of_case(deciding: Deciding) -> tuple[str, ...]:
     case, dangerous = deciding.case, deciding.settings.dangerous
     if case is None:
         return ("Nothing is proposed: draw an object that can be measured.",)
+    if deciding.veiled:
+        return ("Name the class of the object first.",)
     found: list[str] = []
     kind, named = case.offer.kind, case.named
-    if deciding.veiled:
-        found.append("Name the class of the object first.")
-    elif dangerous and named != kind and {named, kind} & dangerous:
+    if dangerous and named != kind and {named, kind} & dangerous:
         found.append(
             f"You named a {in_words(named or kind)}, the measurement says {in_words(kind)}, and one of them is "
             "dangerous: look at it from elsewhere and draw it anew."

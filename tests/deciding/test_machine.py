@@ -2,7 +2,7 @@
 
 from hypothesis import settings
 from hypothesis import strategies as st
-from hypothesis.stateful import RuleBasedStateMachine, initialize, precondition, rule
+from hypothesis.stateful import RuleBasedStateMachine, initialize, rule
 
 from app.deciding.events import (
     ArmPressed,
@@ -39,6 +39,8 @@ FEW = settings(max_examples=150, stateful_step_count=40, deadline=None)
 LIMITS = DecisionSettings(arm_s=10.0, answer_s=3.0, valid_s=30.0, max_age_s=200.0)
 REASON = "a hand is in the way"
 PAGES = st.integers(0, 2)
+MOSTLY_0 = st.sampled_from([0, 0, 0, 0, 1, 2])
+UPSETS = ("nothing", "nothing", "redrawn", "gone", "handed over", "and back", "another tool", "full disk", "pause")
 BACK = st.integers(0, 2)
 """How many proposals ago."""
 
@@ -198,21 +200,76 @@ class Machine(RuleBasedStateMachine):
             self.do(HoldTicked(self.now, page, number))
             self.now += every_s
 
-    @precondition(lambda self: self.deciding.case is not None and self.deciding.control.holder is not None)
     @rule(
-        name=st.booleans(), wait_s=st.sampled_from([0.0, 0.0, 5.0, 9.5, 11.0]), until=st.sampled_from([0.5, 1.2, 1.2])
+        armer=MOSTLY_0,
+        holder=MOSTLY_0,
+        arm_back=MOSTLY_0,
+        hold_back=MOSTLY_0,
+        every_s=st.sampled_from([0.1, 0.1, 0.1, 0.17, 0.45]),
+        wait_s=st.sampled_from([0.0, 0.0, 0.0, 9.3]),
+        upset=st.sampled_from(UPSETS),
+        when=st.integers(0, 12),
     )
-    def decides(self, name: bool, wait_s: float, until: float) -> None:
-        """The whole way, so that what follows a confirmation is seen too."""
-        page, number = self.deciding.control.holder or 0, self.deciding.count
-        if name:
-            self.do(ClassNamed(self.now, page, number, "cylinder"))
-        self.do(PicturesSent(self.now, page, number))
-        self.do(ArmPressed(self.now, page, number))
+    def decides(
+        self,
+        armer: int,
+        holder: int,
+        arm_back: int,
+        hold_back: int,
+        every_s: float,
+        wait_s: float,
+        upset: str,
+        when: int,
+    ) -> None:
+        """The whole way to a confirmation, by and large, with one thing on it that may go wrong."""
+        page = self._all_is_well()
+        self.do(ArmPressed(self.now, (page + armer) % 3, self._number(arm_back)))
         self.now += wait_s
-        for _ in range(round(until / 0.1) + 1):
-            self.do(HoldTicked(self.now, page, number))
-            self.now += 0.1
+        for count in range(14):
+            if count == when:
+                self._upset(upset, page)
+            self.do(HoldTicked(self.now, (page + holder) % 3, self._number(hold_back)))
+            self.now += every_s
+
+    def _all_is_well(self) -> int:
+        """Somebody is in control of a proposal that can be armed."""
+        if self.deciding.control.holder is None:
+            self.do(PageCame(self.now, 0, "page 0"))
+            self.do(ControlTaken(self.now, 0))
+        page = self.deciding.control.holder or 0
+        self.do(FrameOpened(self.now, FrameFacts("held"), WALL_S))
+        self.do(Written(self.now, len(self.deciding.outbox)))
+        self.measured("grip", True)
+        self.do(ClassNamed(self.now, page, self.deciding.count, "cylinder"))
+        return page
+
+    def _upset(self, upset: str, page: int) -> None:
+        other = (page + 1) % 3
+        match upset:
+            case "redrawn":
+                self.measured("grip", True)
+            case "gone":
+                self.goes(page, True)
+                self.do(ControlTaken(self.now, page))
+                self.pictures(0)
+            case "handed over":
+                self.do(PageCame(self.now, other, "another"))
+                self.do(ControlAsked(self.now, other))
+                self.do(HandoverAnswered(self.now, page, True))
+                self.pictures(0)
+            case "and back":
+                self._upset("handed over", page)
+                self.do(ControlGiven(self.now, self.deciding.control.holder or 0))
+                self.do(ControlTaken(self.now, page))
+                self.pictures(0)
+            case "another tool":
+                self.overrides(page, 0, "clipper", False)
+            case "full disk":
+                self.disk(False)
+            case "pause":
+                self.now += 0.5
+            case _:
+                pass
 
     @rule(seconds=st.sampled_from([0.05, 0.5, 2.0, 4.0, 15.0, 90.0]), told=st.booleans())
     def later(self, seconds: float, told: bool) -> None:

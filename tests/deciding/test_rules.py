@@ -17,6 +17,7 @@ from app.deciding.events import (
     OverrideTyped,
     PageCame,
     PageWent,
+    PicturesSent,
     RejectPressed,
     Unmeasured,
     Voided,
@@ -244,6 +245,18 @@ def test_one_is_in_control_and_it_is_asked_for(table: Table) -> None:
     assert table.deciding.control.holder == ANN, "the one who asks cannot answer"
     table.do(HandoverAnswered(table.now, ANN, True))
     assert table.deciding.control.holder == BOB
+
+
+def test_after_a_hand_over_nothing_is_armed_before_the_pictures_are_on_the_other_page(table: Table) -> None:
+    table.do(ControlAsked(table.now, BOB), HandoverAnswered(table.now, ANN, True))
+    table.arm(BOB)
+    assert table.state == "proposed"
+    table.do(PicturesSent(table.now, ANN, table.number))
+    table.arm(BOB)
+    assert table.state == "proposed"
+    table.do(PicturesSent(table.now, BOB, table.number))
+    table.arm(BOB)
+    assert table.state == "armed"
 
 
 def test_whoever_does_not_answer_loses_control(table: Table) -> None:
