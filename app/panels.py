@@ -6,6 +6,7 @@ from typing import Any
 
 from viser import CommandHandle, GuiEvent, ViserServer
 
+from app.decision_text import NOBODY_HTML
 from app.events import (
     Cancelled,
     Cleared,
@@ -90,7 +91,8 @@ class Panels:
 
     def show(self, session: Session) -> None:
         """Bring texts and controls up to date, sending only what has changed."""
-        _set(self._hint, "content", hint_html(session))
+        nobody = session.decision.control.holder is None
+        _set(self._hint, "content", NOBODY_HTML if nobody else hint_html(session))
         _set(self._result, "content", result_html(session))
         _set(self._kind, "value", session.shown.kind or AUTO)
         _set(self._direction, "value", DIRECTION_NAMES[session.shown.direction])
