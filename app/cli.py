@@ -2,6 +2,7 @@
 
 import json
 import sys
+from contextlib import closing
 from math import inf
 from pathlib import Path
 from typing import Annotated, Literal
@@ -9,12 +10,14 @@ from typing import Annotated, Literal
 import typer
 
 from app import log_cli, user_cli
+from app.deciding.settings import DecisionSettings
 from app.describe import describe, describe_result, matching_notes
 from app.door.people import PeopleError, people_file
 from app.drawing_text import parse_area, parse_axis, stroke_text
 from app.flaw_text import FLAW_HELP, parse_flaws
 from app.host import HostError
 from app.record.errors import StoreError
+from app.record.store import Record
 from app.writing import write_file
 from rotrecon.answer import answer, cannot
 from rotrecon.capture import Capture
@@ -23,6 +26,7 @@ from rotrecon.errors import SceneError
 from rotrecon.frame import Frame, FrameUnavailable
 from rotrecon.outcome import FitFailure
 from rotrecon.overlay import outlines, with_outlines, with_segmentation
+from rotrecon.primitives import Kind
 from rotrecon.reconstruct import reconstruct
 from rotrecon.reconstruction import Reconstruction
 from rotrecon.scene.formats.image import encode_png
@@ -140,7 +144,12 @@ def serve(
     port: Annotated[int, typer.Option(min=1, max=65535, help="Port to listen on.")] = 8080,
     certificate: Annotated[Path | None, typer.Option(metavar="FILE", help="TLS certificate, PEM.")] = None,
     key: Annotated[Path | None, typer.Option(metavar="FILE", help="Private key of the certificate, PEM.")] = None,
-    data: Annotated[Path | None, typer.Option(metavar="DIR", help="The folder of users; else your own.")] = None,
+    data: Annotated[
+        Path | None, typer.Option(metavar="DIR", help="The folder of the record and the users; else your own.")
+    ] = None,
+    dangerous: Annotated[
+        list[Kind] | None, typer.Option(metavar="CLASS", help="Marked dangerous: you name it before it is proposed.")
+    ] = None,
     method: MethodName = Settings.method,
     tools: ToolFile = None,
     layers: Layers = 2,
@@ -159,7 +168,20 @@ def serve(
 
     files = None if certificate is None or key is None else Certificate(certificate, key)
     people, notes = people_file(data), (*capture.notes, *matching_notes(frame))
-    serve_console(frame, capture.name, settings, host, port, people=people, certificate=files, notes=notes)
+    deciding = DecisionSettings(dangerous=frozenset(dangerous or ()))
+    with closing(Record.open(data)) as record:
+        serve_console(
+            frame,
+            capture.name,
+            settings,
+            host,
+            port,
+            people=people,
+            certificate=files,
+            record=record,
+            deciding=deciding,
+            notes=notes,
+        )
 
 
 def _demo() -> Capture:

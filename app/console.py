@@ -5,56 +5,46 @@ import io
 import logging
 from collections.abc import Callable, Iterator
 from contextlib import contextmanager, redirect_stdout
-from dataclasses import dataclass
 
 from viser import CameraHandle, ClientHandle, ViserServer
 
-from app.events import Event, PageLeft, Reconstructed
+from app.clock import seconds, wall_s
+from app.console_items import CameraMoved, FromPage, Item, PageClosed, PageOpened, Stopped
+from app.deciding.events import (
+    ClockTicked,
+    DecisionEvent,
+    FrameArrived,
+    FrameOpened,
+    PageCame,
+    PageWent,
+    PicturesSent,
+)
+from app.deciding.settings import DecisionSettings
+from app.deciding.states import Deciding
+from app.decision_text import face
+from app.desk import Desk, Proposable
+from app.events import Event, Reconstructed
 from app.measuring import measure
+from app.newer_frames import facts_of, newer_facts
 from app.page import PageEvent
 from app.page_view import BRAND_COLOR, PageView
 from app.panels import Panels
 from app.pictures import Pictures
+from app.record.store import Record
 from app.scene_view import SceneView
-from app.session import Session, step
+from app.session import Done, Session, step
+from rotrecon.capture import Capture
 from rotrecon.drawing import Drawing
 from rotrecon.frame import Frame
 from rotrecon.settings import Settings
 
 CLOUD_POINTS = 40_000
 """Points of the cloud that are sent to a page: half a megabyte."""
+SOMEBODY = "operator"
+"""Who is at a page when nobody had to log in."""
 MOST_MEASUREMENTS = 2
 """Under way at once: the newest drawing need not wait for an older one, and a drag does not pile them up."""
 log = logging.getLogger(__name__)
-
-
-@dataclass(frozen=True)
-class PageOpened:
-    client: ClientHandle
-
-
-@dataclass(frozen=True)
-class PageClosed:
-    client_id: int
-
-
-@dataclass(frozen=True)
-class CameraMoved:
-    """A page's camera or canvas has changed; what is shown there may have to be fitted again."""
-
-
-@dataclass(frozen=True)
-class FromPage:
-    client_id: int
-    event: Event | PageEvent
-
-
-@dataclass(frozen=True)
-class Stopped:
-    """The console is to be closed; whatever else is on the queue is dropped."""
-
-
-Item = PageOpened | PageClosed | CameraMoved | FromPage | Reconstructed | Stopped
 
 
 class Console:
@@ -75,9 +65,20 @@ class Console:
         notes: tuple[str, ...] = (),
         cloud_points: int = CLOUD_POINTS,
         open_viser: Callable[[], ViserServer] | None = None,
+        record: Record | None = None,
+        deciding: DecisionSettings | None = None,
+        name_of: Callable[[int], str | None] = lambda client_id: SOMEBODY,
     ) -> None:
-        """`open_viser` starts the server that its pages are on; without, one listens on `host` and `port` itself."""
-        self.session = Session((frame.camera.width, frame.camera.height))
+        """Without a `record` nothing can be decided; `name_of` says who is behind one of viser's clients.
+
+        `open_viser` starts the server that its pages are on; without, one listens on `host` and `port` itself.
+        """
+        decision = Deciding(deciding or DecisionSettings())
+        self.session = Session((frame.camera.width, frame.camera.height), decision=decision)
+        self.told = self.session
+        """What pages and robots are told, all of it on disk; read it from any thread."""
+        self._name_of = name_of
+        self._desk = Desk(record, frame, settings, self.post)
         self.frame, self.name, self._settings, self._notes = frame, name, settings, notes
         self._host, self._port, self._cloud_points = host, port, cloud_points
         self.pages: dict[int, PageView] = {}
@@ -107,6 +108,7 @@ class Console:
         self._scene = SceneView(
             self.server, self.frame, self._pictures.television(None, "picture"), self._cloud_points, self._post_from
         )
+        self.session = step(self.session, FrameOpened(seconds(), facts_of(self.frame), wall_s()))
         self.panels.show(self.session)
         self._running = asyncio.run_coroutine_threadsafe(self._run(), self._loop)
         self.server.on_client_connect(self._page_opened)
@@ -122,6 +124,12 @@ class Console:
         self._running.result()
         with redirect_stdout(io.StringIO()):
             self.server.stop()
+
+    def newer(self, capture: Capture) -> None:
+        """Watch over a capture that came after the frame that is held; of any thread."""
+        area = self.told.shown.area
+        event = FrameArrived(seconds(), *newer_facts(self.frame, capture, area))
+        self._loop.call_soon_threadsafe(self.post, event)
 
     def subscribe(self, changed: Callable[[], object]) -> Callable[[], object]:
         """Call `changed`, quickly done, after the session may have changed; returns what ends that. Of any thread."""
@@ -144,6 +152,7 @@ class Console:
 
     async def _run(self) -> None:
         """Take what has happened, as much as there is, then show what has become of it."""
+        ticking = asyncio.create_task(self._desk.tick())
         while True:
             items = [await self._queue.get()]
             while not self._queue.empty():
@@ -154,33 +163,55 @@ class Console:
                 with _logged("what happened was not taken in"):
                     self._take(item)
             self._measure_latest()
-            for changed in list(self._listeners.values()):
-                with _logged("a listener was not told"):
-                    changed()
-            await asyncio.to_thread(self._show)
-            self.server.flush()
-            if self._queue.empty() and not self._measuring:
+            self._desk.prepare(self.session)
+            only_time = all(isinstance(item, ClockTicked) for item in items)
+            with _logged("what happened was not recorded"):
+                await self._tell(not only_time, any(isinstance(item, ClockTicked) for item in items))
+            if self._queue.empty() and not self._measuring and not self._desk.busy:
                 self._settled.set()
-        for task in self._measuring.values():
+        tasks = (ticking, *self._measuring.values(), *self._desk.stop())
+        for task in tasks:
             task.cancel()
-        await asyncio.gather(*self._measuring.values(), return_exceptions=True)
+        await asyncio.gather(*tasks, return_exceptions=True)
+
+    async def _tell(self, happened: bool, ticked: bool) -> None:
+        """Put on disk what has become of it, then tell pages and listeners, if there is anything that they can see."""
+        before = self.told
+        self.session = await self._desk.recorded(self.session, again=ticked)
+        self.told = self.session
+        if not happened and face(before.decision) == face(self.told.decision):
+            return
+        for changed in list(self._listeners.values()):
+            with _logged("a listener was not told"):
+                changed()
+        await asyncio.to_thread(self._show)
+        self.server.flush()
+        self._desk.shown(self.told, self.pages)
 
     def _take(self, item: Item) -> None:
         match item:
             case FromPage(client_id, event):
                 if isinstance(event, Event):
+                    self.session = step(self.session, Done(client_id, event))
+                elif isinstance(event, DecisionEvent):
                     self.session = step(self.session, event)
                 elif client_id in self.pages:
-                    self.pages[client_id].take(event, self.session)
+                    self.pages[client_id].take(event, self.session.visible)
             case Reconstructed(revision):
                 del self._measuring[revision]
                 self.session = step(self.session, item)
+            case Proposable():
+                self.session = self._desk.taken(self.session, item)
+            case ClockTicked() | PicturesSent() | FrameArrived():
+                self.session = step(self.session, item)
             case PageOpened(client):
                 self._opened[client.client_id] = client
+                name = self._name_of(client.client_id) or SOMEBODY
+                self.session = step(self.session, PageCame(seconds(), client.client_id, name))
             case PageClosed(client_id):
                 self._opened.pop(client_id, None)
                 self.pages.pop(client_id, None)
-                self.session = step(self.session, PageLeft())
+                self.session = step(self.session, PageWent(seconds(), client_id))
             case CameraMoved() | Stopped():
                 pass
 
@@ -197,17 +228,18 @@ class Console:
 
     def _show(self) -> None:
         """Show the session on every page; runs in a thread, and only one at a time."""
+        session = self.told.visible
         with _logged("the panels cannot be shown"):
-            self.panels.show(self.session)
+            self.panels.show(session)
         with _logged("the scene cannot be shown"):
-            self._scene.show(self.session.reconstruction)
+            self._scene.show(session.reconstruction)
         while self._opened:
             client_id, client = self._opened.popitem()
             with self._unless_gone(client_id):
                 self.pages[client_id] = self._new_page(client)
         for client_id, page in list(self.pages.items()):
             with self._unless_gone(client_id):
-                page.show(self.session)
+                page.show(session)
 
     @contextmanager
     def _unless_gone(self, client_id: int) -> Iterator[None]:
@@ -230,7 +262,7 @@ class Console:
             lambda event: self._post_from(client.client_id, event),
         )
 
-    def _post_from(self, client_id: int, event: Event | PageEvent) -> None:
+    def _post_from(self, client_id: int, event: Event | DecisionEvent | PageEvent) -> None:
         self.post(FromPage(client_id, event))
 
     async def _page_opened(self, client: ClientHandle) -> None:

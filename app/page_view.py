@@ -7,6 +7,9 @@ from viser import ClientHandle, NotificationHandle, SceneNodeDragEvent, SceneNod
 
 from app.camera_view import CameraView
 from app.charts import section_count
+from app.deciding.events import DecisionEvent
+from app.deciding.states import Said
+from app.decision_panel import DecisionPanel
 from app.events import Event, HandleMoved, PointerDragged, VertexClicked
 from app.object_drawing import Part, Pixel, on_frame
 from app.page import (
@@ -41,12 +44,13 @@ class PageView:
         pictures: Pictures,
         shared: Panels,
         scene: SceneView,
-        post: Callable[[Event | PageEvent], None],
+        post: Callable[[Event | DecisionEvent | PageEvent], None],
     ) -> None:
         self.client, self.state = client, PageState()
         self._pictures, self._scene, self._post = pictures, scene, post
         self._pixels = PixelFinder(pictures.frame)
         self._panels = PagePanels(client, shared, pictures, post)
+        self._decision = DecisionPanel(client, shared.decision, post)
         self._camera_view = CameraView(
             client, pictures.frame, pictures.frame.image, self._handle_dragged, self._dragged
         )
@@ -57,6 +61,7 @@ class PageView:
         self._view = ""
         self._dark = True
         self._notice: Notice | None = None
+        self._said: Said | None = None
         self._notification: NotificationHandle | None = None
         self._world_pose: tuple[np.ndarray, ...] | None = None
         picture = self._camera_view.picture
@@ -100,6 +105,8 @@ class PageView:
             self._lit = (result, section)
             self._scene.light_section(self.client, result, section)
         self._panels.show(result, page, section, session.shown.excluded_sections, moving)
+        self._decision.show(session)
+        self._say(session)
 
     def _show_view(self) -> None:
         """Change the standpoint, and what is seen from it, when the other view was chosen."""
@@ -142,6 +149,13 @@ class PageView:
             self._notification = self.client.add_notification(
                 self._notice.title, self._notice.text, color="orange", auto_close_seconds=NOTICE_SECONDS
             )
+
+    def _say(self, session: Session) -> None:
+        """Tell why what was done on this page did nothing."""
+        said = next((said for said in session.decision.said if said.page == self.client.client_id), None)
+        if said is not None and said != self._said:
+            self.client.add_notification("Not done", said.text, color="orange", auto_close_seconds=NOTICE_SECONDS)
+        self._said = said
 
     async def _clicked(self, event: SceneNodePointerEvent) -> None:
         point = self._pixels.clicked(event)

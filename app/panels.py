@@ -6,6 +6,7 @@ from typing import Any
 
 from viser import CommandHandle, GuiEvent, ViserServer
 
+from app.decision_text import NOBODY_HTML
 from app.events import (
     Cancelled,
     Cleared,
@@ -28,7 +29,7 @@ from app.static_files import static_text
 from rotrecon.primitives import KINDS
 
 PANEL_WIDTH_PX = 390
-TABS = ("Sections", "Picture", "Why", "Buttons", "Help")
+TABS = ("Decision", "Sections", "Picture", "Why", "Buttons", "Help")
 AUTO = "auto"
 KNOWN = "What is known"
 DIRECTIONS = {name: DirectionChosen(direction) for direction, name in DIRECTION_NAMES.items()}
@@ -78,7 +79,7 @@ class Panels:
         self._add_buttons("View", VIEW)
         self._add_keys()
         panel = self._gui.add_panel()
-        self.sections, self.picture, why, draw, keys = (panel.add_tab(name) for name in TABS)
+        self.decision, self.sections, self.picture, why, draw, keys = (panel.add_tab(name) for name in TABS)
         with draw:
             self._add_controls()
         with why:
@@ -90,7 +91,8 @@ class Panels:
 
     def show(self, session: Session) -> None:
         """Bring texts and controls up to date, sending only what has changed."""
-        _set(self._hint, "content", hint_html(session))
+        nobody = session.decision.control.holder is None
+        _set(self._hint, "content", NOBODY_HTML if nobody else hint_html(session))
         _set(self._result, "content", result_html(session))
         _set(self._kind, "value", session.shown.kind or AUTO)
         _set(self._direction, "value", DIRECTION_NAMES[session.shown.direction])

@@ -52,7 +52,7 @@ def result_html(session: Session) -> str:
         f'<div class="rr-kind" data-field="kind" data-value="{content["kind"]}">'
         f"{in_words(content['kind'])}{concave}</div></div>"
         f"{_certainty(content)}"
-        f'<div class="rr-grid">{_fields(content)}</div>{_tool(result, content)}</div>'
+        f'<div class="rr-grid">{_fields(content)}</div>{_tool(session, result, content)}</div>'
     )
 
 
@@ -69,9 +69,11 @@ def _certainty(content: dict[str, Any]) -> str:
     )
 
 
-def _tool(result: Reconstruction, content: dict[str, Any]) -> str:
+def _tool(session: Session, result: Reconstruction, content: dict[str, Any]) -> str:
     """The tool, or whether it is the size or the choice that is doubtful."""
     tool = content["tool"]
+    if tool and not session.proposal_told:
+        return '<div class="rr-tool rr-dim" data-field="tool" data-value="">Tool: see &ldquo;Decision&rdquo;</div>'
     unsure = "not sure, " if isinstance(result.tool, NoTool) and result.tool.unsure else ""
     doubt = "doubtful, " if _doubts(result) else unsure
     text = f"<b>{escape(tool)}</b>" if tool else f"<b>No tool</b> &ndash; {doubt}see &ldquo;Why&rdquo;"
@@ -93,7 +95,7 @@ def why_html(session: Session) -> str:
     dropped = content["sections"]["dropped"].items()
     rows = [("used", str(content["sections"]["used"]))] + [(REASONS.get(str(k), str(k)), str(n)) for k, n in dropped]
     blocks.append(("Sections", _table(rows)))
-    if content["kind"] is not None and not doubts:
+    if content["kind"] is not None and not doubts and (session.proposal_told or content["tool"] is None):
         blocks.append(("Tools", _tools(result, content["reasons"])))
     return '<div class="rr-why" data-testid="why">' + "".join(f"<h4>{n}</h4>{body}" for n, body in blocks) + "</div>"
 

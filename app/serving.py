@@ -5,9 +5,11 @@ from pathlib import Path
 from threading import Event as ThreadEvent
 
 from app.console import Console
+from app.deciding.settings import DecisionSettings
 from app.door.door import Door
 from app.door.hidden_viser import HiddenViser
 from app.door.listening import Certificate, listen
+from app.record.store import Record
 from app.robot.api import robot_routes
 from app.robot.cell import ConsoleCell
 from rotrecon.frame import Frame
@@ -22,18 +24,30 @@ def serve(
     port: int = 8080,
     *,
     people: Path,
+    record: Record | None = None,
+    deciding: DecisionSettings | None = None,
     certificate: Certificate | None = None,
     notes: tuple[str, ...] = (),
     announce: Callable[[str], None] = print,
 ) -> None:
     """Serve the console until interrupted; says where it is to be found, and how to get in.
 
-    Raises HostError, before anything is opened, for an address that cannot be listened on, is taken, or that others
-    can reach while users or TLS are missing; PeopleError for a file of users that cannot be used.
+    Without a `record` nothing can be decided. Raises HostError, before anything is opened, for an address that cannot
+    be listened on, is taken, or that others can reach while users or TLS are missing; PeopleError for a file of users
+    that cannot be used.
     """
     socket = listen(host, port, people, certificate)
     hidden = HiddenViser()
-    console = Console(frame, name, settings, notes=notes, open_viser=hidden.open)
+    console = Console(
+        frame,
+        name,
+        settings,
+        notes=notes,
+        open_viser=hidden.open,
+        record=record,
+        deciding=deciding,
+        name_of=hidden.name_of,
+    )
     console.start()
     door = Door(hidden, people, socket, host, certificate, camera_commands=console.panels.camera_commands)
     try:

@@ -1,117 +1,45 @@
-"""What has been drawn and what came of it: a frozen Session, events, and the pure step(session, event) -> session."""
+"""The session, and the pure step(session, event) -> session that everything goes through."""
 
 from dataclasses import dataclass, replace
-from typing import Literal
 
-from app.events import (
-    Cancelled,
-    Cleared,
-    DiameterTyped,
-    DirectionChosen,
-    Event,
-    HandleMoved,
-    KindChosen,
-    PageLeft,
-    PointerDragged,
-    PolygonClosed,
-    Reconstructed,
-    Redone,
-    Refused,
-    SectionsRestored,
-    SectionToggled,
-    ToolChosen,
-    Undone,
-    VertexClicked,
-    VertexTakenBack,
-)
-from app.knowledge import with_knowledge
-from app.object_drawing import (
-    PARTS,
-    SMALLEST_PX,
-    ObjectDrawing,
-    Part,
-    Pixel,
-    distance_px,
-    on_frame,
-    with_area,
-    with_axis,
-    with_corner,
-    without_proposal,
-)
-from rotrecon.drawing import AreaOfInterest, DrawingError, ObjectAxis, check_area
+from app.deciding.control import no_control
+from app.deciding.events import DecisionEvent, Voided
+from app.deciding.noting import refused
+from app.deciding.step import decide
+from app.drawing_steps import drawn_on
+from app.events import Event, PageLeft, Refused
+from app.object_drawing import with_axis
+from app.session_state import Measured as Measured
+from app.session_state import Notice as Notice
+from app.session_state import Session as Session
+from app.session_state import sentence as sentence
+from app.session_state import with_selected
 from rotrecon.outcome import FitFailure
 from rotrecon.reconstruction import Reconstruction
 
-HISTORY_LENGTH = 200
-"""Steps that can be undone: more than a person remembers, few enough to keep."""
-
-
-Objects = tuple[ObjectDrawing, ...]
-Drag = Literal["none", "running", "cancelled"]
-"""Whether a button is held; what a cancelled drag still sends counts for nothing, up to its end."""
-
 
 @dataclass(frozen=True)
-class Measured:
-    """What came of the drawing of one revision."""
+class Done:
+    """Something that a page does to the drawing, which only the one in control may."""
 
-    revision: int
-    outcome: Reconstruction | Refused
-
-
-@dataclass(frozen=True)
-class Notice:
-    """Something the operator has to be told once about the drawing of one revision."""
-
-    revision: int
-    title: str
-    text: str
+    page: int
+    event: Event
 
 
-@dataclass(frozen=True)
-class Session:
-    """Everything that all pages share; the picture it is drawn on has `size_px` (width, height)."""
-
-    size_px: tuple[int, int]
-    objects: Objects = (ObjectDrawing(),)
-    selected: int = 0
-    preview: ObjectDrawing | None = None
-    """The selected object as a drag that has not ended would leave it."""
-    drag: Drag = "none"
-    vertices_px: tuple[Pixel, ...] = ()
-    """The corners of a polygon that has not been closed."""
-    tool: Part = "area"
-    """What a plain drag draws."""
-    past: tuple[Objects, ...] = ()
-    future: tuple[Objects, ...] = ()
-    revision: int = 0
-    """Grows with every change of what is shown."""
-    measured: Measured | None = None
-    """The latest measurement; until a new one is there, that of an earlier revision."""
-    notice: Notice | None = None
-    """The failure to measure what is shown, or to close the polygon; gone as soon as that changes."""
-
-    @property
-    def shown(self) -> ObjectDrawing:
-        """The selected object, as it is being dragged if it is."""
-        return self.objects[self.selected] if self.preview is None else self.preview
-
-    @property
-    def up_to_date(self) -> bool:
-        """Whether there is nothing left to measure."""
-        return self.shown.complete is None or (self.measured is not None and self.measured.revision == self.revision)
-
-    @property
-    def reconstruction(self) -> Reconstruction | None:
-        """The latest reconstruction, if the latest drawing could be measured at all."""
-        if self.measured is None or isinstance(self.measured.outcome, Refused):
-            return None
-        return self.measured.outcome
-
-
-def step(session: Session, event: Event) -> Session:
+def step(session: Session, event: Event | DecisionEvent | Done) -> Session:
     """The session after an event; an event that makes no sense leaves it as it is."""
-    after = _applied(session, event)
+    if isinstance(event, Done):
+        why = no_control(session.decision, event.page)
+        if why is not None:
+            return replace(session, decision=refused(session.decision, event.page, why))
+        event = event.event
+    if isinstance(event, DecisionEvent):
+        return _decided(session, event)
+    return _bound(session, _drawn(session, event))
+
+
+def _drawn(session: Session, event: Event) -> Session:
+    after = drawn_on(session, event)
     if after.shown != session.shown:
         after = replace(after, revision=session.revision + 1, notice=None)
         if after.shown.complete is None:
@@ -121,139 +49,21 @@ def step(session: Session, event: Event) -> Session:
     return _told(_axis_adopted(after))
 
 
-def _applied(session: Session, event: Event) -> Session:
-    match event:
-        case PointerDragged() | HandleMoved() if session.drag == "cancelled":
-            return replace(session, drag="none" if event.finished else "cancelled")
-        case PointerDragged():
-            return _dragged(_dragging(session, event.finished), event)
-        case VertexClicked():
-            return _clicked(session, event)
-        case HandleMoved():
-            return _handle_moved(_dragging(session, event.finished), event)
-        case PolygonClosed():
-            return _closed(session)
-        case VertexTakenBack():
-            return replace(session, vertices_px=session.vertices_px[:-1])
-        case Cancelled():
-            drag: Drag = "none" if session.drag == "none" else "cancelled"
-            return replace(session, drag=drag, preview=None, vertices_px=())
-        case PageLeft():
-            return replace(session, drag="none", preview=None)
-        case Cleared():
-            kept = replace(session.objects[session.selected], area=None, axis=None, proposed=False)
-            return _changed(replace(session, vertices_px=()), replace(kept, excluded_sections=frozenset()))
-        case Undone():
-            return _undone(session)
-        case Redone():
-            return _redone(session)
-        case ToolChosen():
-            return replace(session, tool=event.tool) if event.tool in PARTS else session
-        case KindChosen() | DirectionChosen():
-            return _changed(session, with_knowledge(session.objects[session.selected], event))
-        case DiameterTyped():
-            return _typed(session, event)
-        case SectionToggled():
-            return _section_toggled(session, event.section)
-        case SectionsRestored():
-            return _changed(session, replace(session.objects[session.selected], excluded_sections=frozenset()))
-        case Reconstructed():
-            return _reconstructed(session, event)
+def _decided(session: Session, event: DecisionEvent) -> Session:
+    """The session after something about the decision; a drag of a page that is no longer in control has no end."""
+    after = replace(session, decision=decide(session.decision, event))
+    if after.decision.control.holder == session.decision.control.holder:
+        return after
+    return _bound(after, _drawn(after, PageLeft()))
 
 
-def _dragging(session: Session, finished: bool) -> Session:
-    """The session in a drag, of which an end leaves nothing, wherever it is."""
-    return replace(session, drag="none", preview=None) if finished else replace(session, drag="running")
-
-
-def _dragged(session: Session, event: PointerDragged) -> Session:
-    start, end = on_frame(event.start_px, session.size_px), on_frame(event.end_px, session.size_px)
-    if start is None or end is None:
-        return session
-    is_axis = event.shift or session.tool == "axis"
-    if session.vertices_px and not event.shift and (not is_axis or distance_px(start, end) <= event.reach_px):
-        session = replace(session, preview=None)
-        return _clicked(session, VertexClicked(end, event.reach_px)) if event.finished else session
-    drawn = replace(session.objects[session.selected], excluded_sections=frozenset())
-    if is_axis:
-        drawn = with_axis(drawn, ObjectAxis(start, end))
-    else:
-        if min(abs(a - b) for a, b in zip(start, end, strict=True)) < SMALLEST_PX:
-            return replace(session, preview=None)
-        drawn = with_area(drawn, AreaOfInterest.rectangle(start, end))
-    return _drawn(session, drawn, event.finished)
-
-
-def _clicked(session: Session, event: VertexClicked) -> Session:
-    point = on_frame(event.point_px, session.size_px)
-    if point is None:
-        return session
-    vertices = session.vertices_px
-    if len(vertices) >= 3 and distance_px(point, vertices[0]) <= event.reach_px:
-        return _closed(session)
-    area = session.shown.area
-    doubled = vertices[-1:] if vertices or area is None else area.vertices_px
-    if any(distance_px(point, corner) <= event.reach_px for corner in doubled):
-        return session
-    return replace(session, vertices_px=(*vertices, point))
-
-
-def _closed(session: Session) -> Session:
-    if len(session.vertices_px) < 3:
-        return session
-    area = AreaOfInterest(session.vertices_px)
-    try:
-        check_area(area, session.size_px)
-    except DrawingError as error:
-        return replace(session, notice=Notice(session.revision, "This polygon cannot be closed", sentence(str(error))))
-    drawn = replace(session.objects[session.selected], excluded_sections=frozenset())
-    return _changed(replace(session, vertices_px=()), with_area(drawn, area))
-
-
-def _handle_moved(session: Session, event: HandleMoved) -> Session:
-    point, drawn = on_frame(event.point_px, session.size_px), session.objects[session.selected]
-    if point is None:
-        return session
-    drawn = replace(drawn, excluded_sections=frozenset())
-    if event.part == "axis" and drawn.axis is not None and event.index in (0, 1):
-        ends = (point, drawn.axis.end_px) if event.index == 0 else (drawn.axis.start_px, point)
-        return _drawn(session, with_axis(drawn, ObjectAxis(*ends)), event.finished)
-    if event.part == "area" and drawn.area is not None and 0 <= event.index < len(drawn.area.vertices_px):
-        area = with_corner(drawn.area, event.index, point)
-        return _drawn(session, replace(without_proposal(drawn), area=area), event.finished)
-    return session
-
-
-def _undone(session: Session) -> Session:
-    if session.vertices_px:
-        return replace(session, vertices_px=session.vertices_px[:-1])
-    if not session.past:
-        return session
-    future = (session.objects, *session.future)
-    return replace(session, objects=session.past[-1], past=session.past[:-1], future=future, preview=None)
-
-
-def _redone(session: Session) -> Session:
-    if not session.future:
-        return session
-    past = (*session.past, session.objects)
-    return replace(session, objects=session.future[0], past=past, future=session.future[1:], preview=None)
-
-
-def _section_toggled(session: Session, section: int) -> Session:
-    result = session.reconstruction
-    if result is None or result.second_cut is None or not session.up_to_date:
-        return session
-    if not 0 <= section < len(result.second_cut.circles.state):
-        return session
-    drawn = session.objects[session.selected]
-    return _changed(session, replace(drawn, excluded_sections=drawn.excluded_sections ^ {section}))
-
-
-def _reconstructed(session: Session, event: Reconstructed) -> Session:
-    if event.revision != session.revision or session.shown.complete is None:
-        return session
-    return replace(session, measured=Measured(event.revision, event.outcome))
+def _bound(before: Session, after: Session) -> Session:
+    """The session without a proposal whose evidence has changed."""
+    case = after.decision.case
+    if case is None or (after.revision == case.offer.revision and after.measured is before.measured):
+        return after
+    voided = decide(after.decision, Voided(after.decision.now, "the drawing was changed"))
+    return replace(after, decision=voided)
 
 
 def _axis_adopted(session: Session) -> Session:
@@ -263,7 +73,7 @@ def _axis_adopted(session: Session) -> Session:
         return session
     if measured is None or measured.revision != session.revision or isinstance(measured.outcome, Refused):
         return session
-    objects = _with_selected(session, with_axis(drawn, measured.outcome.drawing.stroke, proposed=True))
+    objects = with_selected(session, with_axis(drawn, measured.outcome.drawing.stroke, proposed=True))
     revision = session.revision + 1
     return replace(session, objects=objects, revision=revision, measured=replace(measured, revision=revision))
 
@@ -285,40 +95,3 @@ def _told(session: Session) -> Session:
         case _:
             return session
     return replace(session, notice=Notice(session.revision, title, text))
-
-
-def _drawn(session: Session, drawn: ObjectDrawing, finished: bool) -> Session:
-    """A drag's outcome: only shown while it lasts, part of the drawing when it has ended."""
-    return _changed(session, drawn) if finished else replace(session, preview=drawn)
-
-
-def _changed(session: Session, drawn: ObjectDrawing) -> Session:
-    """The session with the selected object drawn anew, which can be undone."""
-    objects = _with_selected(session, drawn)
-    if objects == session.objects:
-        return replace(session, preview=None)
-    past = (*session.past, session.objects)[-HISTORY_LENGTH:]
-    return replace(session, objects=objects, past=past, future=(), preview=None)
-
-
-def _with_selected(session: Session, drawn: ObjectDrawing) -> Objects:
-    return (*session.objects[: session.selected], drawn, *session.objects[session.selected + 1 :])
-
-
-def _typed(session: Session, event: DiameterTyped) -> Session:
-    """The session with another diameter; its digits, one event each, are undone together."""
-    drawn = session.objects[session.selected]
-    typed = with_knowledge(drawn, event)
-    if typed == drawn:
-        return session
-    if session.past:
-        before = session.past[-1]
-        last = replace(before[session.selected], diameter_mm=drawn.diameter_mm)
-        if (*before[: session.selected], last, *before[session.selected + 1 :]) == session.objects:
-            session = replace(session, objects=before, past=session.past[:-1])
-    return _changed(session, typed)
-
-
-def sentence(text: str) -> str:
-    """A reason as a sentence of its own: a capital first, a full stop last."""
-    return text[:1].upper() + text[1:] + ("" if text.endswith((".", "!", "?")) else ".")

@@ -1,8 +1,10 @@
 """Make the README's pictures again: the console on the recorded tin, driven by a real browser."""
 
 import sys
+from contextlib import closing
 from io import BytesIO
 from pathlib import Path
+from tempfile import TemporaryDirectory
 
 import cv2
 import imageio.v3 as imageio
@@ -11,6 +13,7 @@ from playwright.sync_api import Page, sync_playwright
 
 from app.console import Console
 from app.drawing_text import parse_area, parse_axis
+from app.record.store import Record
 from rotrecon.drawing import Drawing
 from rotrecon.frame import Frame
 from rotrecon.overlay import blend, depth_colors, depth_range_m, outlines, with_outlines, with_segmentation
@@ -32,21 +35,27 @@ def main() -> None:
     assert isinstance(frame, Frame)
     PICTURES.mkdir(parents=True, exist_ok=True)
     write_figures(frame)
-    console = Console(frame, capture.name, Settings(), port=0, notes=capture.notes)
-    console.start()
-    try:
-        with sync_playwright() as playwright:
-            browser = playwright.chromium.launch(executable_path=CHROMIUM, args=CHROMIUM_ARGS)
-            page = browser.new_page(viewport={"width": 1280, "height": 720})
-            operator = Operator(page, console)
-            draw(operator)
-            save(page, "camera-view.jpg")
-            page.keyboard.press("v")
-            operator.settle()
-            operator.frames(10)
-            save(page, "3d-view.jpg")
-    finally:
-        console.stop()
+    with TemporaryDirectory() as folder, closing(Record.open(Path(folder))) as record:
+        console = Console(frame, capture.name, Settings(), port=0, notes=capture.notes, record=record)
+        console.start()
+        try:
+            write_console(console)
+        finally:
+            console.stop()
+
+
+def write_console(console: Console) -> None:
+    """The page in both views."""
+    with sync_playwright() as playwright:
+        browser = playwright.chromium.launch(executable_path=CHROMIUM, args=CHROMIUM_ARGS)
+        page = browser.new_page(viewport={"width": 1280, "height": 720})
+        operator = Operator(page, console)
+        draw(operator)
+        save(page, "camera-view.jpg")
+        page.keyboard.press("v")
+        operator.settle()
+        operator.frames(10)
+        save(page, "3d-view.jpg")
 
 
 def draw(operator: Operator) -> None:

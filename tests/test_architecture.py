@@ -116,5 +116,15 @@ def test_stages_know_only_the_types(name):
     assert local(source(name)) <= TYPES
 
 
-def test_session_is_pure():
-    assert not {name.split(".")[0] for name in imports(ROOT / "app" / "session.py")} & {"viser", "asyncio", "threading"}
+PURE = [
+    *(ROOT / "app" / f"{name}.py" for name in ("session", "session_state", "drawing_steps", "events", "decision_text")),
+    *sorted((ROOT / "app" / "deciding").glob("*.py")),
+]
+
+
+@pytest.mark.parametrize("path", PURE, ids=lambda path: path.stem)
+def test_session_and_decision_are_pure(path):
+    """No view, no threads, and no clock but that of the events."""
+    impure = {"viser", "asyncio", "threading", "time", "sqlite3"}
+    assert not {name.split(".")[0] for name in imports(path)} & impure
+    assert not imports(path) & {"app.clock", "app.console", "app.record.store"}

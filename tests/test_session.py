@@ -7,6 +7,7 @@ import pytest
 from hypothesis import given, settings
 from hypothesis import strategies as st
 
+from app.drawing_steps import HISTORY_LENGTH
 from app.events import (
     Cancelled,
     Cleared,
@@ -30,7 +31,7 @@ from app.events import (
 )
 from app.hints import hint
 from app.object_drawing import Pixel
-from app.session import HISTORY_LENGTH, Session, sentence, step
+from app.session import Session, sentence, step
 from rotrecon.drawing import AreaOfInterest, Drawing, DrawingError, ObjectAxis, check_area
 
 SIZE_PX = (640, 480)

@@ -1,14 +1,21 @@
 """How soon the console answers: from the release of the pointer to the last message about it."""
 
 import time
+from contextlib import closing
 from dataclasses import dataclass
+from pathlib import Path
+from tempfile import TemporaryDirectory
 
 import numpy as np
 
 from app.bench.poses import CAMERA, STEREO
 from app.bench.wire import WirePage
+from app.clock import seconds
 from app.console import Console
+from app.console_items import FromPage
+from app.deciding.events import ControlTaken
 from app.object_drawing import Pixel
+from app.record.store import Record
 from rotrecon.arrays import Floats
 from rotrecon.settings import Settings
 from rotrecon.simulation.simulate import Simulated, simulate
@@ -38,20 +45,24 @@ class Latency:
 def release_latency(releases: int) -> Latency:
     """Draw an area and then strokes on it, over a web socket; every release measures the object anew."""
     simulated = simulate(OBJECT, 0, CAMERA, STEREO, supersampling=1)
-    console = Console(simulated.frame, OBJECT, Settings(), port=0)
-    console.start()
-    try:
-        page = WirePage(console.address, 0, simulated.frame)
+    with TemporaryDirectory() as folder, closing(Record.open(Path(folder))) as record:
+        console = Console(simulated.frame, OBJECT, Settings(), port=0, record=record)
+        console.start()
         try:
-            return Latency(_strokes(console, page, simulated, releases))
+            page = WirePage(console.address, 0, simulated.frame)
+            try:
+                return Latency(_strokes(console, page, simulated, releases))
+            finally:
+                page.close()
         finally:
-            page.close()
-    finally:
-        console.stop()
+            console.stop()
 
 
 def _strokes(console: Console, page: WirePage, simulated: Simulated, releases: int) -> Floats:
     page.last_departure_s(OPENED_S)
+    take_control = ControlTaken(seconds(), page.client_id)
+    console.server.get_event_loop().call_soon_threadsafe(console.post, FromPage(page.client_id, take_control))
+    console.wait_until_idle()
     corners = np.array(simulated.drawing.area.vertices_px)
     _drag(console, page, tuple(corners.min(axis=0)), tuple(corners.max(axis=0)), shift=False)
     rng = np.random.default_rng(0)

@@ -22,7 +22,7 @@ class WirePage:
     """One page on a console that shows a frame."""
 
     def __init__(self, address: str, client_id: int, frame: Frame) -> None:
-        self._frame, self._owner = frame, str(client_id)
+        self._frame, self._owner, self.client_id = frame, str(client_id), client_id
         self._socket: ClientConnection = connect(
             address.replace("http", "ws", 1),
             subprotocols=[Subprotocol(f"viser-v{viser.__version__}")],

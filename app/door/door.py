@@ -61,8 +61,7 @@ class Door:
 
     def name_of(self, client_id: int) -> str | None:
         """The authenticated name behind one of viser's clients."""
-        visitor = self._hidden.visitor_of(client_id)
-        return None if visitor is None else visitor.name
+        return self._hidden.name_of(client_id)
 
     def start(self, more: Sequence[BaseRoute] = ()) -> None:
         """Open; returns when the page can be reached."""

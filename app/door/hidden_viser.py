@@ -72,6 +72,11 @@ class HiddenViser:
         visit = self._visits.get(client_id)
         return None if visit is None else visit.visitor
 
+    def name_of(self, client_id: int) -> str | None:
+        """The authenticated name behind one of viser's clients."""
+        visitor = self.visitor_of(client_id)
+        return None if visitor is None else visitor.name
+
     def _numbered(self, connection: Any) -> None:
         """Viser runs this in the connection's own task, whose context says whose it is."""
         visit = _arriving.get()

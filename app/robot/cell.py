@@ -7,12 +7,11 @@ from datetime import UTC, datetime
 from typing import Protocol
 
 from app.console import Console
-from app.decision import Decision, DecisionSource, proposal
-from app.digest import evidence_digest
+from app.decided import decision_of
+from app.decision import Decision, DecisionSource
 from rotrecon.capture import Capture
 from rotrecon.frame import Frame
 from rotrecon.primitives import Primitive
-from rotrecon.reconstruction import Reconstruction
 
 NOTICE_S = 10.0
 
@@ -56,11 +55,11 @@ class Cell(DecisionSource, Protocol):
 
 
 class ConsoleCell:
-    """The console as the robot's side sees it: the result on the page is what is proposed."""
+    """The console as the robot's side sees it."""
 
     def __init__(self, console: Console) -> None:
         self._console = console
-        self._known: tuple[Reconstruction | None, Decision] = (None, Decision())
+        self._known: tuple[object, Decision] = (None, Decision())
         self._lock = threading.Lock()
         self._offered: Offer | None = None
 
@@ -70,15 +69,15 @@ class ConsoleCell:
         return self._console.name
 
     def decision(self) -> Decision:
-        """What is proposed for the drawing as it is; idle while that is being measured."""
-        session = self._console.session
-        result, drawing = session.reconstruction, session.shown.complete
-        if result is None or drawing is None or session.preview is not None or not session.up_to_date:
-            return Decision()
+        """The decision as it stands, all of it on disk; idle while a drawing is being measured."""
+        told = self._console.told
+        case = told.decision.case
+        at = (
+            None if case is None else (told.reconstruction, case.number, case.stage, case.override, told.decision.fault)
+        )
         with self._lock:
-            if self._known[0] is not result:
-                digest = evidence_digest(result.frame, drawing, result.settings, result)
-                self._known = (result, proposal(result, digest))
+            if self._known[0] != at:
+                self._known = (at, decision_of(told))
             return self._known[1]
 
     def subscribe(self, changed: Callable[[], object]) -> Callable[[], object]:
@@ -91,7 +90,7 @@ class ConsoleCell:
 
     def solid(self) -> Primitive | None:
         """See `Cell`."""
-        result = self._console.session.reconstruction
+        result = self._console.told.reconstruction
         return None if result is None else result.solid
 
     def pages(self) -> int:
@@ -105,6 +104,7 @@ class ConsoleCell:
     def offer(self, capture: Capture, who: str) -> Offer:
         """Keep it, and say so on every page: the frame that is being worked on is held."""
         self._offered = Offer(capture, who, datetime.now(UTC))
+        self._console.newer(capture)
         for client in self._console.server.get_clients().values():
             client.add_notification(
                 "A newer frame has arrived",

@@ -1,12 +1,16 @@
 """A console on a small simulated scene, and a real browser that opens its page."""
 
 from collections.abc import Iterator
+from contextlib import closing
+from pathlib import Path
 
 import numpy as np
 import pytest
 from playwright.sync_api import Browser, ViewportSize, sync_playwright
 
 from app.console import Console
+from app.deciding.settings import DecisionSettings
+from app.record.store import Record
 from rotrecon.camera import PinholeCamera
 from rotrecon.settings import Settings
 from rotrecon.simulation.simulate import Simulated, simulate
@@ -20,6 +24,9 @@ SMALL_CAMERA = PinholeCamera(320, 240, np.array([[300.0, 0, 165.0], [0, 301.0, 1
 VIEWPORT: ViewportSize = {"width": 1024, "height": 600}
 """Software WebGL takes its time by the pixel."""
 
+SLOW_PAGE = DecisionSettings(arm_s=60.0, hold_ticks=3, hold_gap_s=2.0)
+"""With software WebGL a page hangs for up to a second; what the times do is tested without a browser."""
+
 
 LITTLE_NOISE = StereoErrors(disparity_sigma_px=0.03, window_px=1, half_occlusion=False)
 """Enough for no two drawings to give the same diameter."""
@@ -31,11 +38,14 @@ def scene() -> Simulated:
 
 
 @pytest.fixture
-def console(scene: Simulated) -> Iterator[Console]:
-    console = Console(scene.frame, "A pipe", Settings(), port=0, cloud_points=500)
-    console.start()
-    yield console
-    console.stop()
+def console(scene: Simulated, tmp_path: Path) -> Iterator[Console]:
+    with closing(Record.open(tmp_path)) as record:
+        console = Console(
+            scene.frame, "A pipe", Settings(), port=0, cloud_points=500, record=record, deciding=SLOW_PAGE
+        )
+        console.start()
+        yield console
+        console.stop()
 
 
 @pytest.fixture(scope="session")

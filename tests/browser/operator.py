@@ -10,7 +10,9 @@ import numpy as np
 from playwright.sync_api import Page, expect
 from viser import transforms as tf
 
-from app.console import Console, FromPage
+from app.console import Console
+from app.console_items import FromPage
+from app.deciding.events import DecisionEvent
 from app.events import Event
 from app.object_drawing import Pixel
 from app.page_view import PageView
@@ -40,8 +42,15 @@ BACKDROP_LEVEL = 24
 class Operator:
     """A page in a browser, and the console behind it."""
 
-    def __init__(self, page: Page, console: Console, enter: Callable[[Page], object] | None = None) -> None:
-        """`enter` opens the page by another way than the console's own address."""
+    def __init__(
+        self,
+        page: Page,
+        console: Console,
+        enter: Callable[[Page], object] | None = None,
+        *,
+        takes_control: bool = True,
+    ) -> None:
+        """`enter` opens the page by another way than the console's own address; control is taken if nobody has it."""
         self.page, self.console = page, console
         page.set_default_timeout(1000 * TIMEOUT_S)
         known = set(console.pages)
@@ -54,6 +63,15 @@ class Operator:
         self._dismiss_software_notice()
         expect(page.get_by_test_id("hint")).to_be_visible()
         self.until(self._picture_in_place, "the picture is where it belongs")
+        if takes_control and console.session.decision.control.holder is None:
+            self.page.get_by_role("button", name="Take control").click()
+            self.until(lambda: self.in_control, "this page is in control")
+            self.settle()
+
+    @property
+    def in_control(self) -> bool:
+        """Whether this page may draw and decide."""
+        return self.console.session.decision.control.holder == self.client_id
 
     @property
     def view(self) -> PageView:
@@ -110,7 +128,7 @@ class Operator:
         """Click on a pixel of the frame."""
         self.page.mouse.click(*self.frame_to_screen(u, v))
 
-    def send(self, *events: Event) -> None:
+    def send(self, *events: Event | DecisionEvent) -> None:
         """Let events happen as if they had come from this page, for tests of what follows from them."""
         for event in events:
             self.console.server.get_event_loop().call_soon_threadsafe(

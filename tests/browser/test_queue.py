@@ -10,7 +10,10 @@ import pytest
 
 import app.console
 from app.bench.wire import WirePage
-from app.console import Console, FromPage, PageClosed, PageOpened
+from app.clock import seconds
+from app.console import Console
+from app.console_items import FromPage, PageClosed, PageOpened
+from app.deciding.events import ControlTaken, PageCame
 from app.events import Event, HandleMoved, PointerDragged, Refused
 from app.hints import hint
 from app.measuring import measure
@@ -21,6 +24,8 @@ from rotrecon.settings import Settings
 from rotrecon.simulation.simulate import Simulated
 
 WAIT_S = 10.0
+NOBODYS = -1
+"""Number of a page that no browser has opened."""
 
 
 class SlowMeasure:
@@ -52,8 +57,8 @@ def slow(monkeypatch: pytest.MonkeyPatch) -> Iterator[SlowMeasure]:
 
 
 def post(console: Console, *events: Event) -> None:
-    for event in events:
-        console.server.get_event_loop().call_soon_threadsafe(console.post, FromPage(-1, event))
+    for event in (PageCame(seconds(), NOBODYS, "Ann"), ControlTaken(seconds(), NOBODYS), *events):
+        console.server.get_event_loop().call_soon_threadsafe(console.post, FromPage(NOBODYS, event))
 
 
 def until(condition: Callable[[], bool]) -> None:

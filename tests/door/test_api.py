@@ -3,6 +3,7 @@
 import json
 from base64 import b64encode
 from collections.abc import Callable, Iterator
+from dataclasses import replace
 from io import BytesIO
 from pathlib import Path
 from typing import Any
@@ -16,13 +17,17 @@ import trimesh
 from websockets.exceptions import ConnectionClosed, InvalidStatus
 from websockets.sync.client import ClientConnection, connect
 
-from app.console import Console, FromPage
+from app.clock import seconds
+from app.console import Console
+from app.console_items import FromPage
+from app.deciding.events import ControlTaken, PageCame
 from app.digest import evidence_digest
 from app.door.door import Door
 from app.door.hidden_viser import HiddenViser
 from app.door.listening import listen
 from app.door.people import read_people, with_person, write_people
 from app.events import Cleared, Event, PointerDragged
+from app.record.store import Record
 from app.robot import stream
 from app.robot.api import robot_routes
 from app.robot.cell import ConsoleCell
@@ -35,6 +40,8 @@ from tests.exact import cylinder, exact_frame
 from tests.waiting import WAIT_S, until
 
 SOLID = cylinder(np.array([0.0, 0.0, 0.8]), np.array([0.0, 1.0, 0.0]), 0.06)
+NOBODYS = -1
+"""Number of a page that no browser has opened."""
 DRAWN = (PointerDragged((130.0, 40.0), (190.0, 200.0)), PointerDragged((160.0, 60.0), (160.0, 180.0), shift=True))
 
 
@@ -44,7 +51,8 @@ class Cell:
     def __init__(self, people: Path) -> None:
         hidden = HiddenViser()
         frame = exact_frame(SOLID)
-        self.console = Console(frame, "A rod", Settings(), cloud_points=10, open_viser=hidden.open)
+        self.record = Record.open(people.parent / "record")
+        self.console = Console(frame, "A rod", Settings(), cloud_points=10, open_viser=hidden.open, record=self.record)
         self.console.start()
         self.door = Door(hidden, people, listen("127.0.0.1", 0, people, None))
         cell = ConsoleCell(self.console)
@@ -59,13 +67,14 @@ class Cell:
         return connect(uri, additional_headers=headers, proxy=None)
 
     def do(self, *events: Event) -> None:
-        for event in events:
-            self.console.server.get_event_loop().call_soon_threadsafe(self.console.post, FromPage(-1, event))
+        for event in (PageCame(seconds(), NOBODYS, "Ann"), ControlTaken(seconds(), NOBODYS), *events):
+            self.console.server.get_event_loop().call_soon_threadsafe(self.console.post, FromPage(NOBODYS, event))
         self.console.wait_until_idle()
 
     def stop(self) -> None:
         self.door.stop()
         self.console.stop()
+        self.record.close()
 
 
 @pytest.fixture(scope="module")
@@ -183,7 +192,8 @@ def test_nothing_here_decides(cell: Cell, robot: httpx.Client) -> None:
         for path in ("/decision", "/decision/confirm", "/health", "/scene.glb", "/confirm", "/arm"):
             assert robot.request(method, path, json={"state": "confirmed"}).status_code in (404, 405)
     assert robot.get("/decision").json() == before
-    assert cell.console.session is session
+    now = cell.console.session
+    assert replace(now, decision=replace(now.decision, now=session.decision.now)) == session
 
 
 def test_a_robot_has_no_page(cell: Cell) -> None:
@@ -233,7 +243,11 @@ def test_a_frame_pushed_in_is_announced_and_changes_nothing(cell: Cell, robot: h
     assert (answer.json()["name"], answer.json()["views"]) == ("From the arm", 0)
     offered = robot.get("/health").json()["offered"]
     assert (offered["name"], offered["who"]) == ("From the arm", "arm")
-    assert (cell.console.session, cell.console.frame) == (session, frame)
+    cell.console.wait_until_idle()
+    now = cell.console.session
+    assert (replace(now, decision=session.decision), cell.console.frame) == (session, frame)
+    assert now.decision.watched is not None
+    assert now.decision.watched.identical, "a camera never sends the same pixels twice"
 
 
 def test_posed_views_can_be_pushed_in(robot: httpx.Client, tmp_path: Path) -> None:

@@ -1,0 +1,50 @@
+"""What the console's queue holds."""
+
+from dataclasses import dataclass
+
+from viser import ClientHandle
+
+from app.deciding.events import ClockTicked, DecisionEvent, FrameArrived, PicturesSent
+from app.desk import Proposable
+from app.events import Event, Reconstructed
+from app.page import PageEvent
+
+
+@dataclass(frozen=True)
+class PageOpened:
+    client: ClientHandle
+
+
+@dataclass(frozen=True)
+class PageClosed:
+    client_id: int
+
+
+@dataclass(frozen=True)
+class CameraMoved:
+    """A page's camera or canvas has changed; what is shown there may have to be fitted again."""
+
+
+@dataclass(frozen=True)
+class FromPage:
+    client_id: int
+    event: Event | DecisionEvent | PageEvent
+
+
+@dataclass(frozen=True)
+class Stopped:
+    """The console is to be closed; whatever else is on the queue is dropped."""
+
+
+Item = (
+    PageOpened
+    | PageClosed
+    | CameraMoved
+    | FromPage
+    | Reconstructed
+    | Proposable
+    | ClockTicked
+    | PicturesSent
+    | FrameArrived
+    | Stopped
+)

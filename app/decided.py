@@ -1,0 +1,46 @@
+"""What the robot's controller is told of the decision: only what is on disk."""
+
+from collections.abc import Callable
+from dataclasses import replace
+from datetime import UTC, datetime, timedelta
+
+from app.clock import seconds
+from app.deciding.states import Armed, Case, Decided, Deciding, Rejected
+from app.decision import Decision, proposal
+from app.session import Session
+
+RECORDED = "this is a recorded scene: nothing of it stands in front of the arm now"
+
+
+def moment(at: float) -> datetime:
+    """A time of the decision's clock as one of day."""
+    return datetime.now(UTC) + timedelta(seconds=at - seconds())
+
+
+def decision_of(session: Session, moment: Callable[[float], datetime] = moment) -> Decision:
+    """The decision on what is shown; idle where nothing is proposed, or the record cannot be written."""
+    deciding, result = session.decision, session.reconstruction
+    case = deciding.case
+    if case is None or result is None or deciding.fault is not None:
+        return Decision()
+    told = proposal(result, case.offer.digest)
+    told = replace(told, reasons=(*_recorded(deciding), *_words(case), *told.reasons))
+    match case.stage:
+        case Armed():
+            return replace(told, state="armed", tool=case.tool)
+        case Decided(how=how, who=who, until=until):
+            return replace(told, state=how, tool=case.tool, who=who, valid_until=moment(until))
+        case Rejected(who=who):
+            return replace(told, state="rejected", who=who)
+        case _:
+            return told
+
+
+def _recorded(deciding: Deciding) -> tuple[str, ...]:
+    return (RECORDED,) if deciding.watched is not None and deciding.watched.held.source == "recorded" else ()
+
+
+def _words(case: Case) -> tuple[str, ...]:
+    """What the operator has typed."""
+    override = () if case.override is None else (f"overridden: {case.override.reason}",)
+    return (*override, f"rejected: {case.stage.reason}") if isinstance(case.stage, Rejected) else override

@@ -1,0 +1,257 @@
+"""The decision, taken with a real mouse: two different actions confirm, and nothing else does."""
+
+from collections.abc import Iterator
+from contextlib import closing
+from dataclasses import replace
+from pathlib import Path
+
+import pytest
+from playwright.sync_api import Browser, Locator, expect
+
+from app.clock import seconds
+from app.console import Console
+from app.decided import decision_of
+from app.deciding.events import ArmPressed, ClockTicked, ControlTaken
+from app.deciding.settings import DecisionSettings
+from app.events import Cleared
+from app.record.errors import StoreError
+from app.record.store import Record
+from app.record.verify import verify
+from rotrecon.settings import Settings
+from rotrecon.simulation.simulate import Simulated
+from tests.browser.conftest import SLOW_PAGE, VIEWPORT
+from tests.browser.operator import TIMEOUT_S, Operator
+from tests.browser.test_page import drawing_events
+
+WHY = "the cutter is blunt today"
+
+
+@pytest.fixture(scope="module")
+def folder(tmp_path_factory: pytest.TempPathFactory) -> Path:
+    return tmp_path_factory.mktemp("record")
+
+
+@pytest.fixture(scope="module")
+def shared(scene: Simulated, browser: Browser, folder: Path) -> Iterator[Operator]:
+    """One page for all of these tests: opening one takes as long as five of them."""
+    yield from _opened(scene, browser, folder, SLOW_PAGE)
+
+
+def _opened(scene: Simulated, browser: Browser, folder: Path, deciding: DecisionSettings) -> Iterator[Operator]:
+    with closing(Record.open(folder)) as record:
+        console = Console(scene.frame, "A pipe", Settings(), port=0, cloud_points=10, record=record, deciding=deciding)
+        console.start()
+        page = browser.new_page(viewport=VIEWPORT)
+        yield Operator(page, console)
+        page.close()
+        console.stop()
+
+
+@pytest.fixture
+def proposed(shared: Operator, scene: Simulated) -> Operator:
+    """The scene's object, drawn anew."""
+    shared.send(Cleared(), *drawing_events(scene))
+    state(shared, "proposed")
+    expect(button(shared, "1. Arm")).to_be_enabled()
+    return shared
+
+
+def button(operator: Operator, name: str) -> Locator:
+    return operator.page.get_by_role("button", name=name)
+
+
+def state(operator: Operator, name: str) -> None:
+    """Wait until the page shows a state."""
+    expect(operator.page.get_by_test_id("decision")).to_have_attribute("data-state", name, timeout=1000 * TIMEOUT_S)
+    operator.settle()
+
+
+def arm(operator: Operator) -> None:
+    button(operator, "1. Arm").click()
+    state(operator, "armed")
+
+
+def hold(operator: Operator, until: str) -> None:
+    """Press the second button and keep it pressed until the page shows a state."""
+    button(operator, "2. Hold").hover()
+    operator.page.mouse.down()
+    state(operator, until)
+    operator.page.mouse.up()
+    operator.settle()
+
+
+def kinds(folder: Path) -> list[str]:
+    """What was recorded, the latest drawing's entries first to last."""
+    with closing(Record.read(folder)) as record:
+        assert verify(record) is None
+        found = [entry.content["kind"] for entry in record.entries()]
+    return found[len(found) - 1 - found[::-1].index("proposal") :]
+
+
+def another(operator: Operator, browser: Browser) -> Operator:
+    return Operator(browser.new_page(viewport=VIEWPORT), operator.console)
+
+
+def test_arming_and_holding_confirm_in_the_record_and_to_the_robot(proposed: Operator, folder: Path) -> None:
+    arm(proposed)
+    expect(proposed.page.get_by_test_id("countdown")).to_contain_text(" s")
+    told = decision_of(proposed.console.told)
+    assert (told.state, told.valid_until) == ("armed", None)
+    hold(proposed, "confirmed")
+    assert kinds(folder) == ["proposal", "armed", "confirmed"]
+    told = decision_of(proposed.console.told)
+    assert (told.state, told.tool, told.who) == ("confirmed", proposed.value("tool"), "operator")
+    assert told.valid_until is not None
+    assert any("recorded" in reason for reason in told.reasons)
+    expect(proposed.page.get_by_test_id("decision")).to_contain_text("by operator")
+
+
+def test_clicks_and_keys_confirm_nothing(proposed: Operator, folder: Path) -> None:
+    arm(proposed)
+    for _ in range(3):
+        button(proposed, "2. Hold").click()
+        proposed.settle()
+    button(proposed, "2. Hold").focus()
+    for key in ("Enter", "Space", "Enter"):
+        proposed.page.keyboard.press(key)
+        proposed.settle()
+    state(proposed, "armed")
+    assert "confirmed" not in kinds(folder)
+
+
+def test_a_button_that_is_disabled_confirms_nothing_and_says_why(proposed: Operator) -> None:
+    button(proposed, "2. Hold").get_by_text("2. Hold").hover(force=True)
+    proposed.page.mouse.down()
+    expect(proposed.page.get_by_text("Arm first, then hold.")).to_be_visible()
+    proposed.page.mouse.up()
+    state(proposed, "proposed")
+
+
+def test_a_changed_drawing_voids_what_was_armed_and_what_was_confirmed(
+    proposed: Operator, scene: Simulated, folder: Path
+) -> None:
+    arm(proposed)
+    number = proposed.console.session.decision.count
+    button(proposed, "Undo").click()
+    proposed.until(lambda: proposed.console.session.decision.count > number, "another drawing is proposed")
+    state(proposed, "proposed")
+    assert kinds(folder) == ["proposal"]
+    proposed.send(ArmPressed(seconds(), proposed.client_id, number))
+    expect(proposed.page.get_by_text("That was for an earlier proposal")).to_be_visible()
+    state(proposed, "proposed")
+    assert kinds(folder)[-1] == "declined"
+    arm(proposed)
+    hold(proposed, "confirmed")
+    start, end = scene.drawing.axis.start_px, scene.drawing.axis.end_px
+    proposed.drag(start, (end[0] + 5, end[1]), shift=True)
+    proposed.until(lambda: decision_of(proposed.console.told).state != "confirmed", "it is confirmed no more")
+
+
+def test_an_override_and_a_rejection_take_a_typed_reason(proposed: Operator, folder: Path) -> None:
+    proposed.page.get_by_text("Reject or override").click()
+    button(proposed, "Override, for that reason").click()
+    expect(proposed.page.get_by_text("Type the reason")).to_be_visible()
+    proposed.page.get_by_text("Reason", exact=True).locator("xpath=../../..").get_by_role("textbox").fill(WHY)
+    button(proposed, "Override, for that reason").click()
+    expect(proposed.page.get_by_test_id("decision")).to_contain_text("override: clipper")
+    arm(proposed)
+    hold(proposed, "overridden")
+    assert kinds(folder)[-1] == "overridden"
+    assert decision_of(proposed.console.told).tool == "clipper"
+    button(proposed, "Reject, for that reason").click()
+    state(proposed, "rejected")
+    assert decision_of(proposed.console.told).state == "rejected"
+
+
+def test_a_disk_that_does_not_obey_blocks_confirming_and_says_so(
+    proposed: Operator, monkeypatch: pytest.MonkeyPatch, caplog: pytest.LogCaptureFixture, folder: Path
+) -> None:
+    arm(proposed)
+
+    def full(*_: object) -> None:
+        raise StoreError("the disk is full")
+
+    with monkeypatch.context() as patched:
+        patched.setattr(Record, "append", full)
+        hold(proposed, "proposed")
+        expect(proposed.page.get_by_test_id("against")).to_contain_text("Nothing can be recorded: the disk is full")
+        assert decision_of(proposed.console.told).state == "idle"
+        expect(button(proposed, "1. Arm")).to_be_disabled()
+    expect(button(proposed, "1. Arm")).to_be_enabled()
+    assert "the disk is full" in caplog.text
+    assert "confirmed" not in kinds(folder)
+    arm(proposed)
+    hold(proposed, "confirmed")
+
+
+@pytest.fixture
+def careful(scene: Simulated, browser: Browser, tmp_path: Path) -> Iterator[Operator]:
+    """A page on which cylinders are dangerous."""
+    yield from _opened(scene, browser, tmp_path, replace(SLOW_PAGE, dangerous=frozenset({"cylinder"})))
+
+
+def test_a_dangerous_class_is_named_before_anything_of_it_is_shown(careful: Operator, scene: Simulated) -> None:
+    careful.send(*drawing_events(scene))
+    expect(button(careful, "Name it")).to_be_visible()
+    expect(careful.page.get_by_test_id("hint")).to_contain_text("say in the Decision panel what the object is")
+    expect(careful.page.locator('[data-field="kind"]')).to_have_count(0)
+    expect(careful.page.get_by_test_id("decision")).not_to_contain_text("cutter")
+    careful.page.get_by_label("The object is a").click()
+    careful.page.get_by_role("option", name="rod").click()
+    careful.settle()
+    button(careful, "Name it").click()
+    expect(careful.page.locator('[data-field="kind"]')).to_be_visible()
+    expect(careful.page.get_by_test_id("against")).to_contain_text("You named a rod")
+    expect(button(careful, "1. Arm")).to_be_disabled()
+
+
+def test_a_watcher_does_nothing_asks_and_is_handed_control(proposed: Operator, browser: Browser) -> None:
+    watcher = another(proposed, browser)
+    arm(proposed)
+    state(watcher, "armed")
+    expect(watcher.page.get_by_test_id("control")).to_contain_text("operator is in control")
+    for name in ("1. Arm", "2. Hold", "Take control"):
+        expect(button(watcher, name)).to_have_count(0)
+    drawn = proposed.console.session.objects
+    watcher.drag((60, 30), (150, 220))
+    expect(watcher.page.get_by_text("You are watching").last).to_be_visible()
+    button(watcher, "Undo").click()
+    watcher.send(
+        ControlTaken(seconds(), watcher.client_id),
+        ArmPressed(seconds(), watcher.client_id, proposed.console.session.decision.count),
+    )
+    assert proposed.console.session.objects == drawn
+    assert proposed.in_control
+    state(watcher, "armed")
+    button(watcher, "Ask for control").click()
+    button(proposed, "Hand it over").click()
+    watcher.until(lambda: watcher.in_control, "control is handed over")
+    state(proposed, "proposed")
+    expect(button(proposed, "1. Arm")).to_have_count(0)
+    arm(watcher)
+    hold(watcher, "confirmed")
+    watcher.page.close()
+    expect(proposed.page.get_by_test_id("control")).to_contain_text("Nobody is in control")
+    button(proposed, "Take control").click()
+    proposed.until(lambda: proposed.in_control, "control is taken again")
+
+
+def test_an_old_frame_blocks_until_it_is_opened_again(proposed: Operator) -> None:
+    """After it the decision's clock is ahead of the machine's, and stands until that has caught up."""
+    proposed.send(ClockTicked(seconds() + SLOW_PAGE.max_age_s + 1))
+    expect(proposed.page.get_by_test_id("against")).to_contain_text("minutes old")
+    expect(button(proposed, "1. Arm")).to_be_disabled()
+    button(proposed, "Open the frame again").click()
+    expect(button(proposed, "1. Arm")).to_be_enabled()
+
+
+def test_a_page_that_comes_back_watches_and_nothing_is_armed(proposed: Operator, folder: Path) -> None:
+    arm(proposed)
+    console, before = proposed.console, proposed.client_id
+    proposed.page.reload()
+    proposed.until(lambda: bool(set(console.pages) - {before}), "the page is back")
+    state(proposed, "proposed")
+    assert console.session.decision.control.holder is None
+    assert kinds(folder)[-1] == "disarmed"
+    expect(button(proposed, "Take control")).to_be_visible()
+    expect(button(proposed, "1. Arm")).to_have_count(0)

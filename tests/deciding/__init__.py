@@ -1,0 +1,1 @@
+"""The rules of the decision, without viser and without a clock."""

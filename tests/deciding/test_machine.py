@@ -1,0 +1,316 @@
+"""Whatever happens in whatever order: nothing is confirmed that was not armed and held, and nothing stays armed."""
+
+from hypothesis import settings
+from hypothesis import strategies as st
+from hypothesis.stateful import RuleBasedStateMachine, initialize, rule
+
+from app.deciding.events import (
+    ArmPressed,
+    ClassNamed,
+    ClockTicked,
+    ControlAsked,
+    ControlGiven,
+    ControlTaken,
+    DecisionEvent,
+    FrameArrived,
+    FrameOpened,
+    FrameReopened,
+    HandoverAnswered,
+    HoldTicked,
+    NotWritten,
+    Offered,
+    OverrideDropped,
+    OverrideTyped,
+    PageCame,
+    PageWent,
+    PicturesSent,
+    RejectPressed,
+    Voided,
+    Written,
+)
+from app.deciding.settings import DecisionSettings
+from app.deciding.states import Armed, Decided, Deciding
+from app.deciding.step import decide
+from app.deciding.watchdog import FrameFacts
+from app.record.entries import Entry
+from tests.deciding.desk import OFFER, WALL_S, offer
+
+FEW = settings(max_examples=150, stateful_step_count=40, deadline=None)
+LIMITS = DecisionSettings(arm_s=10.0, answer_s=3.0, valid_s=30.0, max_age_s=200.0)
+REASON = "a hand is in the way"
+PAGES = st.integers(0, 2)
+MOSTLY_0 = st.sampled_from([0, 0, 0, 0, 1, 2])
+UPSETS = ("nothing", "nothing", "redrawn", "gone", "handed over", "and back", "another tool", "full disk", "pause")
+BACK = st.integers(0, 2)
+"""How many proposals ago."""
+
+
+class Machine(RuleBasedStateMachine):
+    """Pages, a camera, a disk and a clock that do what they like, beside what may follow from it."""
+
+    @initialize(dangerous=st.booleans())
+    def start(self, dangerous: bool) -> None:
+        """The program starts."""
+        limits = DecisionSettings(**{**vars(LIMITS), "dangerous": frozenset({"cylinder"} if dangerous else ())})
+        self.deciding, self.now, self.count, self.digest = Deciding(limits), 0.0, 0, ""
+        self.confirmed = 0
+        self._forget()
+        self.do(FrameOpened(self.now, FrameFacts("held"), WALL_S))
+        self.do(PageCame(self.now, 0, "page 0"))
+        self.do(ControlTaken(self.now, 0))
+
+    def _forget(self) -> None:
+        self.presses: set[tuple[int, int, float]] = set()
+        """Page, proposal and time of every press of ARM."""
+        self.ticks: list[tuple[int, int, float]] = []
+        self.came: dict[int, float] = {}
+        self.pictured: set[tuple[int, int]] = set()
+
+    def do(self, event: DecisionEvent) -> None:
+        before = self.deciding
+        self._note(event)
+        self.deciding = decide(before, event)
+        self._check(before, event, self.deciding)
+
+    def _note(self, event: DecisionEvent) -> None:
+        match event:
+            case ArmPressed():
+                self.presses.add((event.page, event.number, event.at))
+            case HoldTicked():
+                self.ticks.append((event.page, event.number, event.at))
+            case PicturesSent():
+                self.pictured.add((event.page, event.number))
+            case PageCame():
+                self.came.setdefault(event.page, event.at)
+            case PageWent():
+                self.came.pop(event.page, None)
+            case _:
+                pass
+
+    def _check(self, before: Deciding, event: DecisionEvent, after: Deciding) -> None:
+        was = None if before.case is None else before.case.stage
+        now = None if after.case is None else after.case.stage
+        if isinstance(now, Armed):
+            self._check_armed(before, event, after, now, fresh=now != was)
+        if isinstance(now, Decided) and now != was:
+            self._check_decided(before, event, after, now)
+
+    def _check_armed(self, before: Deciding, event: DecisionEvent, after: Deciding, now: Armed, fresh: bool) -> None:
+        assert after.case is not None
+        page = now.page
+        assert (page, after.case.number, now.since) in self.presses
+        assert page == after.control.holder
+        assert page in self.came, "the page that armed it is open"
+        assert now.since >= self.came[page], "and has been since"
+        assert after.now - now.since <= LIMITS.arm_s
+        assert after.case.offer.digest == self.digest
+        assert after.fault is None
+        assert (page, after.case.number) in self.pictured
+        assert not fresh or isinstance(event, ArmPressed)
+
+    def _check_decided(self, before: Deciding, event: DecisionEvent, after: Deciding, now: Decided) -> None:
+        assert isinstance(event, HoldTicked)
+        assert before.case is not None
+        assert after.case is not None
+        assert isinstance(before.case.stage, Armed), "what is confirmed was armed"
+        assert before.control.holder == before.case.stage.page == event.page == now.page
+        assert before.case.number == after.case.number == event.number
+        assert after.case.offer.digest == self.digest, "on the evidence as it is"
+        assert (now.how == "overridden") == (after.case.override is not None)
+        since = before.case.stage.since
+        assert (event.page, event.number, since) in self.presses
+        assert event.at - since <= LIMITS.arm_s, "within its time"
+        run = [event.at]
+        for by, number, then in reversed(self.ticks[:-1]):
+            if (by, number) != (event.page, event.number) or run[-1] - then > LIMITS.hold_gap_s or then < since:
+                break
+            run.append(then)
+        assert len(run) >= LIMITS.hold_ticks
+        assert run[0] - run[-1] >= LIMITS.hold_s
+        assert after.outbox[-1].kind == now.how, "to be written before anybody is told"
+        assert after.outbox[-1].digest == self.digest
+        self.confirmed += 1
+
+    def _number(self, back: int) -> int:
+        return max(self.deciding.count - back, 1)
+
+    @rule(page=PAGES)
+    def comes(self, page: int) -> None:
+        self.do(PageCame(self.now, page, f"page {page}"))
+
+    @rule(page=PAGES, again=st.booleans())
+    def goes(self, page: int, again: bool) -> None:
+        self.do(PageWent(self.now, page))
+        if again:
+            self.do(PageCame(self.now, page, f"page {page}"))
+            assert self.deciding.control.holder != page, "whoever comes back watches"
+
+    @rule(page=PAGES, kind=st.sampled_from([ControlTaken, ControlTaken, ControlGiven, ControlAsked]))
+    def control(self, page: int, kind: type[ControlTaken] | type[ControlGiven] | type[ControlAsked]) -> None:
+        self.do(kind(self.now, page))
+
+    @rule(page=PAGES, granted=st.booleans())
+    def answers(self, page: int, granted: bool) -> None:
+        self.do(HandoverAnswered(self.now, page, granted))
+
+    @rule(tool=st.sampled_from(["grip", "grip", "cutter", None]), sent=st.sampled_from([True, True, False]))
+    def measured(self, tool: str | None, sent: bool) -> None:
+        self.count += 1
+        self.digest = f"digest {self.count}"
+        made = offer(self.digest, tool=tool)
+        self.do(Offered(self.now, made, Entry("proposal", "somebody", self.digest)))
+        if sent:
+            self.pictures(0)
+
+    @rule(back=BACK)
+    def pictures(self, back: int) -> None:
+        holder = self.deciding.control.holder
+        if holder is not None:
+            self.do(PicturesSent(self.now, holder, self._number(back)))
+
+    @rule()
+    def drawn(self) -> None:
+        self.digest = ""
+        self.do(Voided(self.now, "the drawing was changed"))
+        assert self.deciding.case is None
+
+    @rule(page=PAGES, back=BACK, kind=st.sampled_from(["cylinder", "cylinder", "sphere"]))
+    def names(self, page: int, back: int, kind: str) -> None:
+        self.do(ClassNamed(self.now, page, self._number(back), kind))
+
+    @rule(page=PAGES, back=BACK, tool=st.sampled_from(["grip", "clipper", "-"]), drop=st.booleans())
+    def overrides(self, page: int, back: int, tool: str, drop: bool) -> None:
+        number = self._number(back)
+        self.do(
+            OverrideDropped(self.now, page, number) if drop else OverrideTyped(self.now, page, number, tool, REASON)
+        )
+
+    @rule(page=PAGES, back=BACK)
+    def arms_it(self, page: int, back: int) -> None:
+        self.do(ArmPressed(self.now, page, self._number(back)))
+
+    @rule(page=PAGES, back=BACK)
+    def rejects(self, page: int, back: int) -> None:
+        self.do(RejectPressed(self.now, page, self._number(back), REASON))
+
+    @rule(page=PAGES, back=BACK, count=st.integers(1, 16), every_s=st.sampled_from([0.1, 0.1, 0.2, 0.35, 0.45, 1.0]))
+    def holds(self, page: int, back: int, count: int, every_s: float) -> None:
+        number = self._number(back)
+        for _ in range(count):
+            self.do(HoldTicked(self.now, page, number))
+            self.now += every_s
+
+    @rule(
+        armer=MOSTLY_0,
+        holder=MOSTLY_0,
+        arm_back=MOSTLY_0,
+        hold_back=MOSTLY_0,
+        every_s=st.sampled_from([0.1, 0.1, 0.1, 0.17, 0.45]),
+        wait_s=st.sampled_from([0.0, 0.0, 0.0, 9.3]),
+        upset=st.sampled_from(UPSETS),
+        when=st.integers(0, 12),
+    )
+    def decides(
+        self,
+        armer: int,
+        holder: int,
+        arm_back: int,
+        hold_back: int,
+        every_s: float,
+        wait_s: float,
+        upset: str,
+        when: int,
+    ) -> None:
+        """The whole way to a confirmation, by and large, with one thing on it that may go wrong."""
+        page = self._all_is_well()
+        self.do(ArmPressed(self.now, (page + armer) % 3, self._number(arm_back)))
+        self.now += wait_s
+        for count in range(14):
+            if count == when:
+                self._upset(upset, page)
+            self.do(HoldTicked(self.now, (page + holder) % 3, self._number(hold_back)))
+            self.now += every_s
+
+    def _all_is_well(self) -> int:
+        """Somebody is in control of a proposal that can be armed."""
+        if self.deciding.control.holder is None:
+            self.do(PageCame(self.now, 0, "page 0"))
+            self.do(ControlTaken(self.now, 0))
+        page = self.deciding.control.holder or 0
+        self.do(FrameOpened(self.now, FrameFacts("held"), WALL_S))
+        self.do(Written(self.now, len(self.deciding.outbox)))
+        self.measured("grip", True)
+        self.do(ClassNamed(self.now, page, self.deciding.count, "cylinder"))
+        return page
+
+    def _upset(self, upset: str, page: int) -> None:
+        other = (page + 1) % 3
+        match upset:
+            case "redrawn":
+                self.measured("grip", True)
+            case "gone":
+                self.goes(page, True)
+                self.do(ControlTaken(self.now, page))
+                self.pictures(0)
+            case "handed over":
+                self.do(PageCame(self.now, other, "another"))
+                self.do(ControlAsked(self.now, other))
+                self.do(HandoverAnswered(self.now, page, True))
+                self.pictures(0)
+            case "and back":
+                self._upset("handed over", page)
+                self.do(ControlGiven(self.now, self.deciding.control.holder or 0))
+                self.do(ControlTaken(self.now, page))
+                self.pictures(0)
+            case "another tool":
+                self.overrides(page, 0, "clipper", False)
+            case "full disk":
+                self.disk(False)
+            case "pause":
+                self.now += 0.5
+            case _:
+                pass
+
+    @rule(seconds=st.sampled_from([0.05, 0.5, 2.0, 4.0, 15.0, 90.0]), told=st.booleans())
+    def later(self, seconds: float, told: bool) -> None:
+        self.now += seconds
+        if told:
+            self.do(ClockTicked(self.now))
+
+    @rule(works=st.sampled_from([True, True, True, False]))
+    def disk(self, works: bool) -> None:
+        count = len(self.deciding.outbox)
+        self.do(Written(self.now, count) if works else NotWritten(self.now, "the disk is full"))
+        assert works or self.deciding.armed is None, "nothing is armed while nothing can be recorded"
+
+    @rule(
+        pixels=st.sampled_from(["held", "other", "another"]),
+        sequence=st.integers(1, 5),
+        ahead_s=st.sampled_from([0.0, 9.0]),
+        changed=st.booleans(),
+    )
+    def newer(self, pixels: str, sequence: int, ahead_s: float, changed: bool) -> None:
+        facts = FrameFacts(pixels, "live", sequence, WALL_S + ahead_s)
+        self.do(FrameArrived(self.now, facts, WALL_S, changed))
+        assert not (changed and self.deciding.armed)
+
+    @rule(page=PAGES, again=st.booleans())
+    def frame(self, page: int, again: bool) -> None:
+        if again:
+            self.do(FrameReopened(self.now, page, WALL_S))
+        else:
+            self.digest = ""
+            self.do(FrameOpened(self.now, FrameFacts(OFFER.digest), WALL_S))
+            assert self.deciding.case is None
+
+    @rule()
+    def restarts(self) -> None:
+        """The program ends and starts again: all that it knew is gone."""
+        self.deciding, self.digest = Deciding(self.deciding.settings), ""
+        self._forget()
+        assert self.deciding.armed is None
+        self.do(FrameOpened(self.now, FrameFacts("held"), WALL_S))
+
+
+TestMachine = Machine.TestCase
+TestMachine.settings = FEW
