@@ -180,6 +180,7 @@ def serve(
             certificate=files,
             record=record,
             deciding=deciding,
+            capture=capture,
             notes=notes,
         )
 

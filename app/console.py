@@ -24,7 +24,7 @@ from app.deciding.states import Deciding
 from app.decision_text import face
 from app.desk import Desk, Proposable
 from app.events import Event, Reconstructed
-from app.measuring import measure
+from app.measuring import measure, measure_finely
 from app.newer_frames import facts_of, newer_facts
 from app.page import PageEvent
 from app.page_view import BRAND_COLOR, PageView
@@ -68,8 +68,11 @@ class Console:
         record: Record | None = None,
         deciding: DecisionSettings | None = None,
         name_of: Callable[[int], str | None] = lambda client_id: SOMEBODY,
+        capture: Capture | None = None,
     ) -> None:
         """Without a `record` nothing can be decided; `name_of` says who is behind one of viser's clients.
+
+        A `capture` of views, of which the frame is the coarse one, is matched again in every area that is drawn.
 
         `open_viser` starts the server that its pages are on; without, one listens on `host` and `port` itself.
         """
@@ -81,6 +84,7 @@ class Console:
         self._desk = Desk(record, frame, settings, self.post)
         self.frame, self.name, self._settings, self._notes = frame, name, settings, notes
         self._host, self._port, self._cloud_points = host, port, cloud_points
+        self._capture = capture if capture is not None and capture.views else None
         self.pages: dict[int, PageView] = {}
         self._open_viser = open_viser or self._open_server
         self._opened: dict[int, ClientHandle] = {}
@@ -221,10 +225,16 @@ class Console:
         if drawing is None or session.up_to_date or session.revision in self._measuring:
             return
         if len(self._measuring) < MOST_MEASUREMENTS:
-            self._measuring[session.revision] = asyncio.create_task(self._measure(session.revision, drawing))
+            finely = self._capture if session.measured_once else None
+            task = asyncio.create_task(self._measure(session.revision, drawing, finely))
+            self._measuring[session.revision] = task
 
-    async def _measure(self, revision: int, drawing: Drawing) -> None:
-        self.post(Reconstructed(revision, await asyncio.to_thread(measure, self.frame, drawing, self._settings)))
+    async def _measure(self, revision: int, drawing: Drawing, finely: Capture | None) -> None:
+        if finely is not None:
+            outcome = await asyncio.to_thread(measure_finely, finely, drawing, self._settings)
+        else:
+            outcome = await asyncio.to_thread(measure, self.frame, drawing, self._settings)
+        self.post(Reconstructed(revision, outcome, coarse=finely is None and self._capture is not None))
 
     def _show(self) -> None:
         """Show the session on every page; runs in a thread, and only one at a time."""

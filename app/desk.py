@@ -75,7 +75,7 @@ class Desk:
         if not decision.outbox or (decision.fault is not None and not again):
             return session
         for event in await asyncio.to_thread(
-            write, self._record, decision.outbox, self._frame, lambda: self._digest(evidence)
+            write, self._record, decision.outbox, self._frame_of(evidence), lambda: self._digest(evidence)
         ):
             session = step(session, event)
         if session.decision.fault not in (None, decision.fault):
@@ -95,16 +95,20 @@ class Desk:
         self._preparing.cancel()
         return (self._preparing,)
 
+    def _frame_of(self, evidence: Evidence | None) -> Frame:
+        """That was measured in: of views the one that was matched for the area."""
+        return self._frame if evidence is None else evidence.result.frame
+
     def _digest(self, evidence: Evidence | None) -> str | None:
         """Of the evidence as it is at this moment."""
         if evidence is None:
             return None
-        return evidence_digest(self._frame, evidence.drawing, self._settings, evidence.result)
+        return evidence_digest(evidence.result.frame, evidence.drawing, self._settings, evidence.result)
 
     async def _prepare(self, evidence: Evidence, who: str) -> None:
         event: Offered | Unmeasured | None = None
         try:
-            event = await asyncio.to_thread(offered, evidence, who, self._frame, self._settings)
+            event = await asyncio.to_thread(offered, evidence, who, evidence.result.frame, self._settings)
         except Exception:
             log.exception("the measurement cannot be proposed")
         finally:

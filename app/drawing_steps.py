@@ -174,7 +174,7 @@ def _section_toggled(session: Session, section: int) -> Session:
 def _reconstructed(session: Session, event: Reconstructed) -> Session:
     if event.revision != session.revision or session.shown.complete is None:
         return session
-    return replace(session, measured=Measured(event.revision, event.outcome))
+    return replace(session, measured=Measured(event.revision, event.outcome, event.coarse))
 
 
 def _drawn(session: Session, drawn: ObjectDrawing, finished: bool) -> Session:

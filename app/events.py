@@ -132,6 +132,8 @@ class Reconstructed:
 
     revision: int
     outcome: Reconstruction | Refused
+    coarse: bool = False
+    """On the depth of the whole frame, where that is to be matched again in the area, finely."""
 
 
 Event = (

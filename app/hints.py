@@ -42,6 +42,8 @@ def hint(session: Session) -> str:
     if session.preview is not None:
         return "Let go where it is right; the result follows."
     if not session.up_to_date:
+        if session.measured_once:
+            return "Measured coarsely; the area is being matched again, finely \N{HORIZONTAL ELLIPSIS}"
         return "Measuring \N{HORIZONTAL ELLIPSIS}"
     if shown.proposed:
         return "Measured. The axis is proposed: drag its ends, or draw another (shift + drag, or choose Axis)."

@@ -12,6 +12,7 @@ from app.door.listening import Certificate, listen
 from app.record.store import Record
 from app.robot.api import robot_routes
 from app.robot.cell import ConsoleCell
+from rotrecon.capture import Capture
 from rotrecon.frame import Frame
 from rotrecon.settings import Settings
 
@@ -27,6 +28,7 @@ def serve(
     record: Record | None = None,
     deciding: DecisionSettings | None = None,
     certificate: Certificate | None = None,
+    capture: Capture | None = None,
     notes: tuple[str, ...] = (),
     announce: Callable[[str], None] = print,
 ) -> None:
@@ -47,6 +49,7 @@ def serve(
         record=record,
         deciding=deciding,
         name_of=hidden.name_of,
+        capture=capture,
     )
     console.start()
     door = Door(hidden, people, socket, host, certificate, camera_commands=console.panels.camera_commands)

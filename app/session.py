@@ -81,7 +81,7 @@ def _axis_adopted(session: Session) -> Session:
 def _told(session: Session) -> Session:
     """The session with a notice of a failure, once a revision and not in the middle of a drag or a polygon."""
     measured = session.measured
-    if measured is None or measured.revision != session.revision:
+    if measured is None or measured.revision != session.revision or measured.coarse:
         return session
     if session.preview is not None or session.vertices_px or session.notice is not None:
         return session

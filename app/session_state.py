@@ -20,6 +20,8 @@ class Measured:
 
     revision: int
     outcome: Reconstruction | Refused
+    coarse: bool = False
+    """Whether a finer one follows, once nothing is dragged any more."""
 
 
 @dataclass(frozen=True)
@@ -64,7 +66,14 @@ class Session:
     @property
     def up_to_date(self) -> bool:
         """Whether there is nothing left to measure."""
-        return self.shown.complete is None or (self.measured is not None and self.measured.revision == self.revision)
+        if self.shown.complete is None:
+            return True
+        return self.measured_once and (self.preview is not None or not (self.measured and self.measured.coarse))
+
+    @property
+    def measured_once(self) -> bool:
+        """Whether there is a measurement of what is shown, be it a coarse one."""
+        return self.measured is not None and self.measured.revision == self.revision
 
     @property
     def reconstruction(self) -> Reconstruction | None:
