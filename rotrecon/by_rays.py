@@ -72,10 +72,14 @@ def by_rays(segmented: Reconstruction, depth_m: Cloud) -> Reconstruction:
     radii = _sections(found, segmented)
     excluded = [number for number in drawing.excluded_sections if 0 <= number < len(radii.circles.state)]
     if excluded:
-        found = _find(replace(scene, patch=_without(patch, radii, excluded)), held, segmented)
-        radii = radii.excluding(excluded)
+        many = f"{len(excluded)} of {len(radii.heights_m)} sections are excluded by hand; put some of them back"
+        without, radii = replace(scene, patch=_without(patch, radii, excluded)), radii.excluding(excluded)
+        found = (
+            _find(without, held, segmented)
+            if radii.circles.used.any()
+            else FitFailure(FailureReason.TOO_FEW_SECTIONS, many)
+        )
         if isinstance(found, FitFailure):
-            many = f"{len(excluded)} of {len(radii.heights_m)} sections are excluded by hand; put some of them back"
             failure, left = FitFailure(found.reason, many), Cut(radii.circles, None)
             return replace(segmented, fit=failure, sections=radii.sections, second_cut=left)
     return _reconstruction(segmented, found, radii)
