@@ -206,14 +206,15 @@ def _reconstruction(segmented: Reconstruction, found: _Found, radii: SectionRadi
     cut = Cut(radii.circles, FittedAxis(found.axis.point_m, found.axis.direction, radii.circles.used))
     result = replace(segmented, fit=fit, sections=radii.sections, second_cut=cut, candidates=candidates)
     in_base = solid.moved(T_base_camera)
-    if doubts:
-        return replace(result, solid=in_base, tool=NoTool(doubts))
     readings = [_reading(found, chosen, in_base, middle_m)]
     for one in rivals:
         other = solid_of(one, None, found.ends_m, found.axis.direction, settings)
         readings.append(_reading(found, one, other.moved(T_base_camera), middle_m))
-    tool = propose_tool(tuple(readings), T_base_camera[:3, 3], fit.concave, settings.tools)
-    return replace(result, solid=in_base, tool=tool)
+    result = replace(result, solid=in_base, readings=tuple(readings))
+    if doubts:
+        return replace(result, tool=NoTool(doubts))
+    tool = propose_tool(result.readings, T_base_camera[:3, 3], fit.concave, settings.tools)
+    return replace(result, tool=tool)
 
 
 def _reading(found: _Found, one: Ranked, solid: Primitive, middle_m: float) -> Reading:
@@ -250,6 +251,8 @@ def _evidence(
         noise_px=None if baseline_m is None else noise_m * scene.patch.focal_px * baseline_m / depth_m**2,
         correlation_px=max(noise.correlation_px, fit.likeness.length_px if fit.likeness.alike > 0 else 0.0),
         noise_stated=noise.stated,
+        depth_weight=fit.likeness.independent_share / fit.sigma**2,
+        outline_weight=sum(share * float((1.0 / outline.sigma_px**2).sum()) for outline, share in fit.outlines),
         open_ends=None if found.extent is None else (found.extent.low_open, found.extent.high_open),
         parts=tuple(_told(part, middle_m) for part in radii.parts),
         radius_low_m=radii.low_m,
