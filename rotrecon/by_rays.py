@@ -213,7 +213,7 @@ def _reconstruction(segmented: Reconstruction, found: _Found, radii: SectionRadi
     result = replace(result, solid=in_base, readings=tuple(readings))
     if doubts:
         return replace(result, tool=NoTool(doubts))
-    tool = propose_tool(result.readings, T_base_camera[:3, 3], fit.concave, settings.tools)
+    tool = propose_tool(result.readings, T_base_camera[:3, 3], fit.concave, settings.tools, segmented.drawing.contact)
     return replace(result, tool=tool)
 
 

@@ -8,7 +8,7 @@ import numpy as np
 from rotrecon.arrays import Bools, Floats, Indices, freeze
 from rotrecon.camera import transform
 from rotrecon.clearance import Clearance, clearances
-from rotrecon.contact import PROPOSED, Contact, Place, contact_on, within
+from rotrecon.contact import Contact, Place, contact_on, within
 from rotrecon.envelope import STANDOFF_M, Box, Envelope, envelope_of
 from rotrecon.outcome import Fit
 from rotrecon.reconstruction import Reconstruction
@@ -54,12 +54,16 @@ class Grasp:
     """What of contact and approach the arm does not reach: a sentence each."""
 
 
-def grasp_of(result: Reconstruction, tool: Tool, place: Place = PROPOSED) -> Grasp | None:
-    """A tool of the table at a place of the measured solid; None where nothing was measured that has a reading."""
+def grasp_of(result: Reconstruction, tool: Tool, place: Place | None = None) -> Grasp | None:
+    """A tool of the table at a place of the measured solid, by default that of the drawing.
+
+    None where nothing was measured that has a reading.
+    """
     fit, solid = result.fit, result.solid
     if not isinstance(fit, Fit) or solid is None or not result.readings:
         return None
-    frame, place = result.frame, within(place, solid)
+    frame = result.frame
+    place = within(result.drawing.contact if place is None else place, solid)
     contact = contact_on(solid, frame.T_base_camera[:3, 3], place)
     # as much thicker as the middle may be, it may be here
     more_m = diameter_mm(result.readings[0])[1] / 1000 - 2 * float(solid.radius_at(0.0))
@@ -79,11 +83,11 @@ def shown_tool(result: Reconstruction) -> Tool | None:
 
 
 def clearances_of(result: Reconstruction) -> tuple[Clearance, ...]:
-    """Every tool of the table at the proposed contact; none where nothing was measured."""
+    """Every tool of the table at the drawing's contact; none where nothing was measured."""
     fit, solid = result.fit, result.solid
     if not isinstance(fit, Fit) or solid is None or not result.readings:
         return ()
-    contact = contact_on(solid, result.frame.T_base_camera[:3, 3])
+    contact = contact_on(solid, result.frame.T_base_camera[:3, 3], result.drawing.contact)
     return clearances(result.readings, contact.point_m, fit.concave, result.settings.tools)
 
 

@@ -48,8 +48,7 @@ def _edges(box: Box) -> Floats:
 def _draw(image: Bytes, line_m: Floats, frame: Frame, color: tuple[int, int, int], thickness: int) -> None:
     """A line (n, 3), base coordinates, as far as it is before the camera."""
     place = frame.camera.project(transform(inverse(frame.T_base_camera), line_m)) * 16
-    usable = np.isfinite(place).all(axis=1) & (np.abs(place) < 1e6).all(axis=1)
-    for first, second, is_shown in zip(place[:-1], place[1:], usable[:-1] & usable[1:], strict=True):
-        if is_shown:
-            (a, b), (c, d) = np.rint([first, second]).astype(int).tolist()
-            cv2.line(image, (a, b), (c, d), color, thickness, cv2.LINE_AA, shift=4)
+    pieces = np.concatenate([place[:-1], place[1:]], axis=1)
+    drawable = np.asarray(np.isfinite(pieces).all(axis=1) & (np.abs(pieces) < 1e6).all(axis=1))
+    for a, b, c, d in np.rint(pieces[drawable]).astype(np.int32).tolist():
+        cv2.line(image, (a, b), (c, d), color, thickness, cv2.LINE_AA, shift=4)

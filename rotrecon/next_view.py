@@ -236,9 +236,10 @@ def _rays(camera: PinholeCamera, box_px: Floats) -> tuple[Floats, float]:
     """Rays (3, n) evenly over a rectangle, and how many pixels each stands for."""
     low, high = box_px
     share = (np.arange(GRID) + 0.5) / GRID
-    u, v = np.meshgrid(*(low[axis] + share * (high[axis] - low[axis]) for axis in (0, 1)))
-    place = np.stack([u.ravel(), v.ravel()], axis=-1)
-    return camera.unproject(place, np.ones(len(place))).T, float(np.prod(high - low)) / GRID**2
+    v, u = np.indices((GRID, GRID))
+    place = low + np.stack([share[u.ravel()], share[v.ravel()]], axis=-1) * (high - low)
+    size = high - low
+    return camera.unproject(place, np.ones(len(place))).T, float(size[0] * size[1]) / GRID**2
 
 
 def _in_the_way(result: Reconstruction, fit: Fit) -> Floats:

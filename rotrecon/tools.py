@@ -7,7 +7,7 @@ from math import degrees, inf
 import numpy as np
 
 from rotrecon.arrays import Floats, freeze
-from rotrecon.contact import contact_on
+from rotrecon.contact import PROPOSED, Place, contact_on
 from rotrecon.outcome import Range
 from rotrecon.primitives import Frustum, Primitive, Revolution, in_words
 from rotrecon.tool_table import Tool, ToolTable
@@ -96,7 +96,11 @@ class _Objection:
 
 
 def propose_tool(
-    readings: tuple[Reading, ...], camera_center_m: Floats, concave: bool, tools: ToolTable
+    readings: tuple[Reading, ...],
+    camera_center_m: Floats,
+    concave: bool,
+    tools: ToolTable,
+    place: Place = PROPOSED,
 ) -> ToolProposal | NoTool:
     """The first tool of the table that fits whatever the object may be, seen by a camera at `camera_center_m` (3,).
 
@@ -109,7 +113,7 @@ def propose_tool(
         raise ValueError("there is no reading to choose a tool for")
     if concave:
         return NoTool(("the surface is seen from inside, and no tool works there; draw an object seen from outside",))
-    contact = contact_on(readings[0].solid, camera_center_m)
+    contact = contact_on(readings[0].solid, camera_center_m, place)
     reasons: list[str] = []
     unsure: list[str] = []
     for tool in tools:

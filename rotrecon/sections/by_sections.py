@@ -51,18 +51,18 @@ def _with_solid(
         fit=fit,
         first_cut_radius_m=_radius_from(first, chosen.radii.shape, settings),
         solid=solid,
-        tool=_tool(fit, readings, T_base_camera[:3, 3], settings),
+        tool=_tool(fit, readings, T_base_camera[:3, 3], result),
         readings=readings,
     )
 
 
 def _tool(
-    fit: Fit, readings: tuple[Reading, ...], camera_center_m: Floats, settings: Settings
+    fit: Fit, readings: tuple[Reading, ...], camera_center_m: Floats, result: Reconstruction
 ) -> ToolProposal | NoTool:
     """The tool for a solid in base coordinates; none for a size that is doubtful."""
     if fit.doubts:
         return NoTool(fit.doubts)
-    return propose_tool(readings, camera_center_m, fit.concave, settings.tools)
+    return propose_tool(readings, camera_center_m, fit.concave, result.settings.tools, result.drawing.contact)
 
 
 def _radius_from(cut: Cut, shape: Shape, settings: Settings) -> float | None:
