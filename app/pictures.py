@@ -58,7 +58,7 @@ class Pictures:
     def camera_view(
         self, result: Reconstruction | None, opacity: float, section: int, overlay: OverlayName = "nothing"
     ) -> Bytes:
-        """The picture that is drawn on: depth blended in, the solid's outline, one section lit, and what lies over it."""
+        """The picture that is drawn on: depth blended in, the solid's outline, a section lit, and what is over it."""
         image = self.frame.image
         if opacity > 0:
             image = blend(image, self.depth_layer, np.isfinite(self.frame.depth_m), opacity)
