@@ -15,7 +15,6 @@ from app.stage_chart import STAGE_AXES, STAGE_BANDS, STAGE_SERIES, stage_chart, 
 from rotrecon.reconstruction import Reconstruction
 
 CHART_HEIGHT_PX = 150
-MOST_STEPS = 12
 JPEG_QUALITY = 90
 
 
@@ -74,6 +73,8 @@ class InspectionPanel:
             self._chart.scales = scales
         if line is not None and self._step.max != len(line.stages):
             self._step.max = len(line.stages)
+        if self._step.value != step + 1:
+            self._step.value = min(step + 1, int(self._step.max))
         image = None if result is None else self._pictures.step(result, section, step)
         self._image.visible = image is not None
         if image is not None:

@@ -13,8 +13,6 @@ from rotrecon.outcome import Fit
 from rotrecon.reconstruction import Reconstruction
 
 STYLES = {"fits": "rr-sure", "not sure": "rr-unsure", "ruled out": "rr-out"}
-OTHER_PLACES = 5
-"""That are told beside the best."""
 NOTHING = '<div class="rr-why rr-dim" data-testid="tools">Measure an object first.</div>'
 
 
@@ -25,13 +23,16 @@ def tools_html(result: Reconstruction | None) -> str:
         return NOTHING
     doubts = result.fit.doubts if isinstance(result.fit, Fit) else ()
     doubtful = '<div class="rr-unsure">No tool is proposed: the size is doubtful, see &ldquo;Why&rdquo;.</div>'
-    rows = "".join(_tool(one) for one in found)
+    rows = "".join(_tool(one, result) for one in found)
     return f'<div class="rr-why" data-testid="tools">{doubtful if doubts else ""}{rows}</div>'
 
 
-def _tool(one: Clearance) -> str:
+def _tool(one: Clearance, result: Reconstruction) -> str:
     name, verdict = escape(one.tool.name), one.verdict
     reason = "" if not one.why else f'<div class="rr-small">{escape(one.why)}</div>'
+    view = next_view_in(result) if verdict == "not sure" else None
+    if view is not None:
+        reason += f'<div class="rr-small" data-testid="settles">{escape(next_view_text(view))}</div>'
     room = "" if verdict == "ruled out" else f'<div class="rr-small" data-field="clearance">{clearance_text(one)}</div>'
     return (
         f'<div class="rr-tool" data-tool="{name}" data-verdict="{verdict}"><div class="rr-head"><b>{name}</b>'
@@ -108,19 +109,17 @@ def next_view_html(result: Reconstruction | None) -> str:
     if found is None:
         return '<div class="rr-why rr-dim" data-testid="next-view">Nothing can be said of other views.</div>'
     place = ", ".join(f"{value:.3f}" for value in found.best.T_base_camera[:3, 3])
-    told = [(way(view.angle_rad, view.nearness, ""), view.half_width_m) for view in spread_over(found.tried)]
-    others = "".join(f"<tr><td>{escape(going)}</td><td>&plusmn; {1000 * off:.2f} mm</td></tr>" for going, off in told)
+    told = [(way(view), view.distance_m, view.half_width_m) for view in found.by_distance]
+    others = "".join(
+        f"<tr><td>{escape(going)}</td><td>{away_m:.2f} m</td><td>&plusmn; {1000 * off_m:.2f} mm</td></tr>"
+        for going, away_m, off_m in told
+    )
     return (
         f'<div class="rr-why" data-testid="next-view" data-value="{1000 * found.best.half_width_m:.3f}">'
         f"<p>{escape(next_view_text(found))}</p>"
         f"<p>Camera at {place} m in base coordinates.</p>"
-        f"<table>{others}</table></div>"
+        f'<h4>The best at each distance</h4><table class="rr-whole">{others}</table></div>'
     )
-
-
-def spread_over(tried: tuple[ViewFrom, ...]) -> tuple[ViewFrom, ...]:
-    """A few of the places that were tried, from the best to the worst."""
-    return tried[:: max(len(tried) // OTHER_PLACES, 1)]
 
 
 def next_view_text(found: NextView) -> str:
@@ -129,18 +128,18 @@ def next_view_text(found: NextView) -> str:
     beyond = f" {found.beyond_reach} other places are beyond the arm's limits." if found.beyond_reach else ""
     if best.half_width_m >= found.now_m:
         return f"No other view promises more: the diameter is known to ± {1000 * found.now_m:.2f} mm.{beyond}"
-    going = way(best.angle_rad, best.nearness, found.toward)
+    going = way(best)
     return (
         f"Go {going}: from {best.distance_m:.2f} m the diameter should be known to ± {1000 * best.half_width_m:.2f} mm "
         f"instead of ± {1000 * found.now_m:.2f} mm.{beyond}"
     )
 
 
-def way(angle_rad: float, nearness: float, toward: str) -> str:
+def way(view: ViewFrom) -> str:
     """A change of place in words."""
-    share = 100 * abs(1 - nearness)
-    parts = [] if nearness == 1 else [f"{share:.0f} % {'nearer' if nearness < 1 else 'farther away'}"]
-    if angle_rad:
-        side = f" to the {toward}" if toward in ("left", "right") else f" {toward}" if toward else ""
-        parts.append(f"{abs(degrees(angle_rad)) if toward else degrees(angle_rad):.0f} degrees round the axis{side}")
-    return " and ".join(parts) or "nowhere else"
+    share = 100 * abs(1 - view.nearness)
+    parts = [] if view.nearness == 1 else [f"{share:.0f} % {'nearer' if view.nearness < 1 else 'farther away'}"]
+    if view.angle_rad:
+        side = f"to the {view.toward}" if view.toward in ("left", "right") else view.toward
+        parts.append(f"{abs(degrees(view.angle_rad)):.0f} degrees round the axis {side}".strip())
+    return " and ".join(parts) or "as now"

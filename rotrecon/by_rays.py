@@ -15,9 +15,10 @@ from rotrecon.outcome import Evidence, FailureReason, Fit, FitFailure, PartOf, R
 from rotrecon.primitives import Primitive
 from rotrecon.rays.hypotheses import Held, Scene, scene_of
 from rotrecon.rays.patch import Patch, patch_of
+from rotrecon.rays.ray_fit import RayFit
 from rotrecon.rays.robust import Ranked, rank
 from rotrecon.rays.starts import robust_line
-from rotrecon.rays.surfaces import Lateral
+from rotrecon.rays.surfaces import Ball, Lateral
 from rotrecon.recognition import candidates_of, chosen_of, intervals_of, is_possible, solid_of
 from rotrecon.reconstruction import Cut, Reconstruction
 from rotrecon.section_radii import SectionRadii, section_radii
@@ -253,11 +254,19 @@ def _evidence(
         noise_stated=noise.stated,
         depth_weight=fit.likeness.independent_share / fit.sigma**2,
         outline_weight=sum(share * float((1.0 / outline.sigma_px**2).sum()) for outline, share in fit.outlines),
+        doubt_share=_doubt_share(fit),
         open_ends=None if found.extent is None else (found.extent.low_open, found.extent.high_open),
         parts=tuple(_told(part, middle_m) for part in radii.parts),
         radius_low_m=radii.low_m,
         radius_high_m=radii.high_m,
     )
+
+
+def _doubt_share(fit: RayFit) -> float:
+    """Of the variance of the radius at the surface's centre, from 0 to 1."""
+    place = 3 if isinstance(fit.surface, Ball) else 4
+    doubt = np.broadcast_to(fit.doubt, fit.covariance.shape)[place, place]
+    return float(np.clip(doubt / max(fit.covariance[place, place], np.finfo(float).tiny), 0.0, 1.0))
 
 
 def _told(part: Part, middle_m: float) -> PartOf:

@@ -49,6 +49,8 @@ class ViewFrom:
     nearness: float
     """Distance from the object's middle over the present one."""
     distance_m: float
+    toward: str
+    """Which way round that is, as the camera sees it now: left, right, up or down; empty for straight ahead."""
     half_width_m: float
     """Half the 95 % interval of the diameter, of a measurement from there alone."""
 
@@ -85,8 +87,8 @@ class NextView:
     """All of which something can be said, the best first."""
     beyond_reach: int
     """Places that the arm's limits do not allow."""
-    toward: str
-    """Which way round, as the camera sees it: left, right, up, down; empty for straight ahead."""
+    by_distance: tuple[ViewFrom, ...]
+    """The best at each distance, the nearest first."""
 
 
 def next_view(result: Reconstruction) -> NextView | None:
@@ -109,14 +111,21 @@ def next_view(result: Reconstruction) -> NextView | None:
             half_width_m = _half_width(present, T_base_camera)
             if half_width_m is not None:
                 away_m = float(np.linalg.norm(T_base_camera[:3, 3] - present.solid.center_m))
-                tried.append(ViewFrom(T_base_camera, angle_rad, nearness, away_m, half_width_m))
+                toward = _toward(result.frame.T_base_camera, T_base_camera)
+                tried.append(ViewFrom(T_base_camera, angle_rad, nearness, away_m, toward, half_width_m))
     if not tried:
         return None
-    least_m = min(view.half_width_m for view in tried)
-    good = [view for view in tried if view.half_width_m <= (1 + AS_GOOD) * least_m]
-    best = min(good, key=lambda view: abs(view.angle_rad) + abs(1 - view.nearness))
+    at_each = [[view for view in tried if view.nearness == nearness] for nearness in NEARNESSES]
     tried.sort(key=lambda view: view.half_width_m)
-    return NextView(best, present.half_width_m, tuple(tried), beyond_reach, _toward(result, best))
+    by_distance = tuple(_best(views) for views in at_each if views)
+    return NextView(_best(tried), present.half_width_m, tuple(tried), beyond_reach, by_distance)
+
+
+def _best(views: list[ViewFrom]) -> ViewFrom:
+    """Of those that are as good as the best, the one that takes the shortest way."""
+    least_m = min(view.half_width_m for view in views)
+    good = [view for view in views if view.half_width_m <= (1 + AS_GOOD) * least_m]
+    return min(good, key=lambda view: abs(view.angle_rad) + abs(1 - view.nearness))
 
 
 def moved_round(T_base_camera: Floats, solid: Primitive, angle_rad: float, nearness: float) -> Floats:
@@ -132,8 +141,9 @@ def predicted_half_width(result: Reconstruction, T_base_camera: Floats) -> float
     """Half the 95 % interval, m, of the diameter of the measured solid from another pose (4, 4) of the camera.
 
     The Fisher information of depths and outline that would be seen, at the noise of this frame, what its cloud shows
-    to be in the way left out; times by how much the present interval is wider than its own prediction. None where
-    there is no interval, or too little would be seen.
+    to be in the way left out; times by how much the present interval is wider than its own prediction. The part of the
+    interval that other ways to the size differ by comes from the limbs, where errors are of so many pixels: it shrinks
+    with the distance only. None where there is no interval, or too little would be seen.
     """
     present = _present(result)
     return None if present is None else _half_width(present, T_base_camera)
@@ -151,7 +161,13 @@ def _present(result: Reconstruction) -> _Present | None:
 
 def _half_width(present: _Present, T_base_camera: Floats) -> float | None:
     sigma_m = _sigma(present, T_base_camera)
-    return None if sigma_m is None else present.half_width_m * sigma_m / present.sigma_m
+    if sigma_m is None:
+        return None
+    centers_m = np.stack([present.result.frame.T_base_camera[:3, 3], T_base_camera[:3, 3]])
+    now_m, there_m = np.linalg.norm(centers_m - present.solid.center_m, axis=1)
+    doubt = present.evidence.doubt_share
+    by_noise, by_doubt = (sigma_m / present.sigma_m) ** 2, float(there_m / now_m) ** 2
+    return present.half_width_m * float(np.sqrt((1 - doubt) * by_noise + doubt * by_doubt))
 
 
 def _sigma(present: _Present, T_base_camera: Floats) -> float | None:
@@ -272,11 +288,12 @@ def _about(direction: Floats, angle_rad: float) -> Floats:
     return np.eye(3) + sin(angle_rad) * cross + (1 - cos(angle_rad)) * (cross @ cross)
 
 
-def _toward(result: Reconstruction, view: ViewFrom) -> str:
-    if view.angle_rad == 0.0:
+def _toward(T_base_camera: Floats, T_base_moved: Floats) -> str:
+    """Which way a camera is turned, as it sees it; empty where it is not."""
+    right, down, _ = T_base_camera[:3, :3].T @ (T_base_moved[:3, 2] - T_base_camera[:3, 2])
+    if max(abs(right), abs(down)) < np.finfo(np.float32).eps:
         return ""
-    T = result.frame.T_base_camera
-    right, down, _ = T[:3, :3].T @ (view.T_base_camera[:3, 3] - T[:3, 3])
+    # it goes on looking at the object, and so goes left where it comes to look to the right
     if abs(right) >= abs(down):
-        return "right" if right > 0 else "left"
-    return "down" if down > 0 else "up"
+        return "left" if right > 0 else "right"
+    return "up" if down > 0 else "down"

@@ -109,7 +109,7 @@ def test_from_the_side_of_the_missing_arc_more_is_known(side: int) -> None:
     best = next_view(result)
     assert best is not None
     assert best.best.angle_rad * free_side > 0
-    assert best.toward in ("left", "right", "up", "down")
+    assert best.best.toward in ("left", "right", "up", "down")
 
 
 def test_only_places_that_the_arm_reaches_are_named() -> None:
