@@ -13,6 +13,7 @@ from rotrecon.outcome import Fit
 from rotrecon.reconstruction import Reconstruction
 
 STYLES = {"fits": "rr-sure", "not sure": "rr-unsure", "ruled out": "rr-out"}
+BEWARE = "At the noise of this frame. Smeared limbs, or an edge that is seen here and not from there, make it wider."
 NOTHING = '<div class="rr-why rr-dim" data-testid="tools">Measure an object first.</div>'
 
 
@@ -118,6 +119,7 @@ def next_view_html(result: Reconstruction | None) -> str:
         f'<div class="rr-why" data-testid="next-view" data-value="{1000 * found.best.half_width_m:.3f}">'
         f"<p>{escape(next_view_text(found))}</p>"
         f"<p>Camera at {place} m in base coordinates.</p>"
+        f'<p class="rr-small">{BEWARE}</p>'
         f'<h4>The best at each distance</h4><table class="rr-whole">{others}</table></div>'
     )
 
