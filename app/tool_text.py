@@ -11,6 +11,7 @@ from rotrecon.grasp import Grasp, Hits
 from rotrecon.next_view import NextView, ViewFrom
 from rotrecon.outcome import Fit
 from rotrecon.reconstruction import Reconstruction
+from rotrecon.tools import ToolProposal
 
 STYLES = {"fits": "rr-sure", "not sure": "rr-unsure", "ruled out": "rr-out"}
 BEWARE = "At the noise of this frame. Smeared limbs, or an edge that is seen here and not from there, make it wider."
@@ -61,13 +62,14 @@ def _margin(value_mm: float) -> str:
 def place_html(result: Reconstruction | None) -> str:
     """The tool that is shown at its place: what it would hit, and whether the arm gets there."""
     grasp = None if result is None else grasp_in(result)
-    if grasp is None:
+    if result is None or grasp is None:
         return '<div class="rr-why" data-testid="place"></div>'
+    unproposed = "" if isinstance(result.tool, ToolProposal) else ", which is not proposed,"
     checks = [*hit_lines(grasp), *reach_lines(grasp)]
     rows = "".join(f'<li class="{"rr-good" if good else "rr-bad"}">{escape(text)}</li>' for good, text in checks)
     return (
         f'<div class="rr-why" data-testid="place" data-clear="{str(all(good for good, _ in checks)).lower()}">'
-        f"<h4>{escape(grasp.tool.name)} {place_text(grasp.place)}</h4><ul>{rows}</ul></div>"
+        f"<h4>{escape(grasp.tool.name)}{unproposed} {place_text(grasp.place)}</h4><ul>{rows}</ul></div>"
     )
 
 

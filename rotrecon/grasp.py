@@ -31,7 +31,7 @@ class Hits:
     pixel: Indices
     """(n,) index into the flattened frame."""
     nearest_m: float | None
-    """From the object's surface; None without points."""
+    """From the object's surface, its ends not bounded; None without points."""
 
     def __post_init__(self) -> None:
         freeze(self)
@@ -106,12 +106,19 @@ def strange(result: Reconstruction, fit: Fit) -> Bools:
     margin_m = max(OWN_SHARE * float(fit.solid.radius_at(0.0)), OWN_SIGMA * noise_m)
     offset_m = points_m[pixel].astype(np.float64)
     along = (offset_m - fit.solid.center_m) @ fit.solid.direction
-    (low, high), ends = fit.solid.ends, None if fit.evidence is None else fit.evidence.open_ends
-    beside = (along > (-np.inf if ends and ends[0] else low - margin_m)) & (
-        along < (np.inf if ends and ends[1] else high + margin_m)
-    )
+    low, high = _own_ends(fit, margin_m)
+    beside = (along > low) & (along < high)
     known[pixel] = ~(beside & (fit.solid.distance(offset_m) <= margin_m))
     return known
+
+
+def _own_ends(fit: Fit, margin_m: float) -> tuple[float, float]:
+    """Between which distances along the axis a point may be the object's: an open end goes on, a closed one is off."""
+    low, high = fit.solid.ends
+    length_m = None if fit.intervals is None else fit.intervals.length_m
+    off_m = margin_m if length_m is None else max(margin_m, (length_m[1] - length_m[0]) / 2)
+    open_ends = (fit.evidence and fit.evidence.open_ends) or (False, False)
+    return -np.inf if open_ends[0] else low - off_m, np.inf if open_ends[1] else high + off_m
 
 
 def _hits(result: Reconstruction, fit: Fit, envelope: Envelope) -> tuple[Hits, Hits]:
@@ -125,7 +132,7 @@ def _hits(result: Reconstruction, fit: Fit, envelope: Envelope) -> tuple[Hits, H
     solid = fit.solid.moved(frame.T_base_camera)
 
     def hits(which: Bools) -> Hits:
-        nearest_m = float(solid.distance(in_base[which]).min()) if which.any() else None
+        nearest_m = max(float(solid.distance(in_base[which]).min()), 0.0) if which.any() else None
         return Hits(pixel[which].astype(np.int32), nearest_m)
 
     return hits(there), hits(~there)

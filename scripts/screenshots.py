@@ -56,6 +56,29 @@ def write_console(console: Console) -> None:
         operator.settle()
         operator.frames(10)
         save(page, "3d-view.jpg")
+    console = Console(frame, capture.name, Settings(), port=0, notes=capture.notes)
+    console.start()
+    try:
+        with sync_playwright() as playwright:
+            browser = playwright.chromium.launch(executable_path=CHROMIUM, args=CHROMIUM_ARGS)
+            page = browser.new_page(viewport={"width": 1280, "height": 720})
+            operator = Operator(page, console)
+            draw(operator)
+            save(page, "camera-view.jpg")
+            page.get_by_role("tab", name="Stages").click()
+            page.get_by_role("textbox", name="Over the picture").click()
+            page.get_by_role("option", name="tool").click()
+            page.get_by_role("tab", name="Tool").click()
+            operator.settle()
+            page.get_by_test_id("place").scroll_into_view_if_needed()
+            operator.frames(10)
+            save(page, "tool.jpg")
+            page.keyboard.press("v")
+            operator.settle()
+            operator.frames(10)
+            save(page, "3d-view.jpg")
+    finally:
+        console.stop()
 
 
 def draw(operator: Operator) -> None:
