@@ -66,7 +66,7 @@ def write_console(console: Console) -> None:
             draw(operator)
             save(page, "camera-view.jpg")
             page.get_by_role("tab", name="Stages").click()
-            page.get_by_role("textbox", name="Over the picture").click()
+            page.get_by_label("Over the picture").click()
             page.get_by_role("option", name="tool").click()
             page.get_by_role("tab", name="Tool").click()
             operator.settle()
