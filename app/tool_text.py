@@ -73,6 +73,15 @@ def place_html(result: Reconstruction | None) -> str:
     )
 
 
+def trouble(result: Reconstruction) -> str | None:
+    """Why the tool that is proposed cannot be where it is placed, and what to do; None where nothing is in its way."""
+    grasp = grasp_in(result) if isinstance(result.tool, ToolProposal) else None
+    if grasp is None:
+        return None
+    bad = [text for good, text in (*reach_lines(grasp), *hit_lines(grasp)) if not good]
+    return f"{bad[0]}; turn the approach or move the contact under \u201cTool\u201d" if bad else None
+
+
 def place_text(place: Place) -> str:
     """Where it touches."""
     if place == PROPOSED:

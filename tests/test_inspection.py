@@ -12,7 +12,8 @@ from hypothesis import strategies as st
 from app import result_text
 from app.answers import answer_of
 from app.events import ContactPlaced, PointerDragged, Reconstructed, Undone
-from app.inspection import line_in
+from app.hints import warning
+from app.inspection import grasp_in, line_in
 from app.inspection_text import EXCLUDED_TIMES, candidates_html, distance_html, odds, residuals_html, speaks
 from app.object_drawing import ObjectDrawing
 from app.origins import origins, origins_html
@@ -22,10 +23,11 @@ from app.section_drawing import radius_interval_mm, section_svg, section_text
 from app.session import Session, step
 from app.stage_chart import STAGE_SERIES, stage_chart, stage_scales, stage_text
 from app.tool_text import next_view_html, place_html, tools_html, way
-from rotrecon.camera import transform
+from rotrecon.camera import inverse, transform
 from rotrecon.contact import MOST_ANGLE_RAD, PROPOSED, Place
 from rotrecon.distance import Distance, distance_between
 from rotrecon.frame import StereoNoise
+from rotrecon.grasp_overlay import HIT_COLOR, with_grasp
 from rotrecon.line_stages import line_of
 from rotrecon.next_view import ViewFrom
 from rotrecon.outcome import FailureReason, Fit, FitFailure
@@ -35,6 +37,7 @@ from rotrecon.residuals import BEFORE, BEHIND, Residuals, residuals_of, with_res
 from rotrecon.settings import Settings
 from rotrecon.simulation.simulate import Simulated, simulate
 from rotrecon.tools import ToolProposal
+from rotrecon.workspace import Workspace
 
 REFUSED = FitFailure(FailureReason.NOT_ROUND, "draw anew")
 SECTION = 60
@@ -234,6 +237,25 @@ def test_tools_and_the_next_view_in_words(result: Reconstruction) -> None:
     for text in (tools_html(None), place_html(None), next_view_html(None)):
         assert "None" not in text
     assert "None" not in html + said
+
+
+def test_a_tool_that_would_hit_something_is_said_in_the_hint(session: Session, result: Reconstruction) -> None:
+    assert warning(session) is None
+    grasp = grasp_in(result)
+    assert grasp is not None
+    cloud = result.frame.points_m.copy()
+    box = grasp.envelope.jaws[0]
+    cloud[3, 4] = transform(inverse(result.frame.T_base_camera), box.center_m)
+    hit = replace(result, frame=replace(result.frame, points_m=cloud))
+    told = warning(step(replace(session, measured=None), Reconstructed(session.revision, hit)))
+    assert told is not None
+    assert told.startswith("At the object it would hit 1 point of the cloud, the nearest ")
+    assert 'data-clear="false"' in place_html(hit)
+    assert (with_grasp(hit.frame.image, grasp_in(hit) or grasp, hit.frame)[3, 4] == HIT_COLOR).all()
+    short = replace(result, frame=replace(result.frame, workspace=Workspace(reach_m=(0.0, 0.2))))
+    told = warning(step(replace(session, measured=None), Reconstructed(session.revision, short)))
+    assert told is not None
+    assert "Out of reach: the contact is" in told
 
 
 def test_a_way_in_words() -> None:
