@@ -21,7 +21,7 @@ OWN_SHARE = 0.08
 OWN_SIGMA = 4.0
 """Standard deviations of its depth, alike."""
 SMEAR_PX = 4
-"""Pixels beyond the segmented object that matching smears with it: half a window."""
+"""Pixels beyond those of its sections that matching smears with the object: half a window."""
 
 
 @dataclass(frozen=True, eq=False)
@@ -92,12 +92,16 @@ def clearances_of(result: Reconstruction) -> tuple[Clearance, ...]:
 
 
 def strange(result: Reconstruction, fit: Fit) -> Bools:
-    """Which points (H W,) of the frame's cloud are not the object's: nor on its surface, nor segmented, nor smeared."""
+    """Which points (H W,) of the frame's cloud are not the object's: nor on its surface, nor beside its pixels.
+
+    The pixels of its sections, that is: what was merely segmented with it may be the table it stands on.
+    """
     frame = result.frame
     points_m = frame.points_m.reshape(-1, 3)
     known = np.isfinite(points_m[:, 2])
     own = np.zeros(frame.depth_m.shape, dtype=np.uint8)
-    own.ravel()[result.segments.pixel[result.segmentation.kept]] = 1
+    if result.sections is not None:
+        own.ravel()[result.sections.pixel] = 1
     side = 2 * SMEAR_PX + 1
     own = np.asarray(cv2.dilate(own, np.ones((side, side), dtype=np.uint8))) > 0
     known &= ~own.ravel()

@@ -14,7 +14,8 @@ EDGES = [(a, b) for a in range(8) for b in range(a + 1, 8) if np.abs(CORNERS[a] 
 """Of the corners of a box, those that are joined."""
 EDGE_POINTS = 24
 """Pieces of an edge: what is behind the camera is left out piece by piece."""
-HIT_RADIUS_PX = 1
+SPOT = np.ones((3, 3), dtype=np.uint8)
+"""Pixels that a point is drawn with: one alone would not be seen."""
 
 
 def with_grasp(image: Bytes, grasp: Grasp, frame: Frame) -> Bytes:
@@ -22,8 +23,9 @@ def with_grasp(image: Bytes, grasp: Grasp, frame: Frame) -> Bytes:
     drawn = image.copy()
     thickness = max(1, round(image.shape[1] / 500))
     for hits, color in ((grasp.on_way, WAY_COLOR), (grasp.at_contact, HIT_COLOR)):
-        for v, u in zip(*np.divmod(hits.pixel, frame.camera.width), strict=True):
-            cv2.circle(drawn, (int(u), int(v)), HIT_RADIUS_PX, color, -1)
+        there = np.zeros(drawn.shape[:2], dtype=np.uint8)
+        there.ravel()[hits.pixel] = 1
+        drawn[np.asarray(cv2.dilate(there, SPOT)) > 0] = color
     envelope = grasp.envelope
     for box, color in ((envelope.mouth, MOUTH_COLOR), *((part, STEEL_COLOR) for part in envelope.solid)):
         for line in _edges(box):

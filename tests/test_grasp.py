@@ -204,6 +204,24 @@ def test_a_point_on_the_way_is_told_apart_and_the_object_is_no_obstacle() -> Non
     assert len(turned.on_way.pixel) == 0, "from elsewhere the way is free"
 
 
+def test_what_was_segmented_with_the_object_but_is_not_on_it_is_an_obstacle() -> None:
+    result, found = measured(), grasp(measured())
+    assert result.sections is not None
+    camera, T = result.frame.camera, inverse(result.frame.T_base_camera)
+    jaw = found.envelope.jaws[0]
+    cloud = result.frame.points_m.copy()
+    own = np.zeros(cloud.shape[:2], dtype=bool)
+    own.ravel()[result.sections.pixel] = True
+    kept = np.unique(result.segments.pixel[result.segmentation.kept])
+    u, v = np.rint(camera.project(transform(T, jaw.center_m))).astype(int)
+    assert not own[v - 4 : v + 5, u - 4 : u + 5].any()
+    cloud[v, u] = transform(T, jaw.center_m)
+    hit = replace(result, frame=replace(result.frame, points_m=cloud))
+    everything = replace(hit, segmentation=replace(hit.segmentation, kept=np.ones_like(hit.segmentation.kept)))
+    assert len(kept) < everything.segmentation.kept.sum()
+    assert v * camera.width + u in grasp(everything).at_contact.pixel
+
+
 def test_what_the_arm_does_not_reach_is_said() -> None:
     near = replace(measured().frame, workspace=Workspace(reach_m=(0.1, 0.9)))
     found = grasp(replace(measured(), frame=near))

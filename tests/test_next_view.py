@@ -93,8 +93,7 @@ def behind_a_post(result: Reconstruction, side: int) -> Reconstruction:
     radius_px = float(fit.solid.radius_at(0.0)) * camera.focal_px / fit.solid.center_m[2]
     depth_m = frame.depth_m.copy()
     depth_m[(beside_px > 0.2 * radius_px) & (beside_px < 3 * radius_px)] = 0.85 * fit.solid.center_m[2]
-    kept = replace(result.segmentation, kept=np.zeros_like(result.segmentation.kept))
-    return replace(result, frame=replace(frame, points_m=camera.cloud(depth_m)), segmentation=kept)
+    return replace(result, frame=replace(frame, points_m=camera.cloud(depth_m)), sections=None)
 
 
 @pytest.mark.parametrize("side", [-1, 1])
