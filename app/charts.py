@@ -20,7 +20,7 @@ BOTTOM = 0.04
 """How far up the chart sections without a radius stand: high enough to be seen whole."""
 
 
-def _dots(label: str, color: str, size_px: float) -> dict[str, Any]:
+def dots(label: str, color: str, size_px: float) -> dict[str, Any]:
     points = {"show": True, "size": size_px, "fill": color, "stroke": color}
     return {"label": label, "stroke": color, "width": 0, "points": points}
 
@@ -30,11 +30,11 @@ RADIUS_SERIES: tuple[Any, ...] = (
     {"label": "95 %", "stroke": BAND, "fill": BAND, "width": 0, "points": {"show": False}},
     {"label": "", "class": "rr-unnamed", "width": 0, "points": {"show": False}},
     {"label": "fitted", "stroke": PROFILE, "width": 2, "points": {"show": False}},
-    _dots("used", USED, 4),
-    _dots("odd radius", ODD, 4),
-    _dots("excluded", EXCLUDED, 5),
-    _dots("no radius", MISSING, 4),
-    _dots("chosen", LIT, 10),
+    dots("used", USED, 4),
+    dots("odd radius", ODD, 4),
+    dots("excluded", EXCLUDED, 5),
+    dots("no radius", MISSING, 4),
+    dots("chosen", LIT, 10),
 )
 RADIUS_BANDS: tuple[Any, ...] = ({"series": (1, 2), "fill": BAND},)
 RADIUS_AXES: tuple[Any, ...] = (

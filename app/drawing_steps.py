@@ -5,6 +5,7 @@ from dataclasses import replace
 from app.events import (
     Cancelled,
     Cleared,
+    ContactPlaced,
     DiameterTyped,
     DirectionChosen,
     Event,
@@ -72,7 +73,7 @@ def drawn_on(session: Session, event: Event) -> Session:
             return replace(session, tool=event.tool) if event.tool in PARTS else session
         case KindChosen() | DirectionChosen():
             return _changed(session, with_knowledge(session.objects[session.selected], event))
-        case DiameterTyped():
+        case DiameterTyped() | ContactPlaced():
             return _typed(session, event)
         case SectionToggled():
             return _section_toggled(session, event.section)
@@ -191,7 +192,7 @@ def _changed(session: Session, drawn: ObjectDrawing) -> Session:
     return replace(session, objects=objects, past=past, future=(), preview=None)
 
 
-def _typed(session: Session, event: DiameterTyped) -> Session:
+def _typed(session: Session, event: DiameterTyped | ContactPlaced) -> Session:
     """The session with another diameter; its digits, one event each, are undone together."""
     drawn = session.objects[session.selected]
     typed = with_knowledge(drawn, event)
@@ -199,7 +200,9 @@ def _typed(session: Session, event: DiameterTyped) -> Session:
         return session
     if session.past:
         before = session.past[-1]
-        last = replace(before[session.selected], diameter_mm=drawn.diameter_mm)
+        is_contact = isinstance(event, ContactPlaced)
+        same = {"contact": drawn.contact} if is_contact else {"diameter_mm": drawn.diameter_mm}
+        last = replace(before[session.selected], **same)
         if (*before[: session.selected], last, *before[session.selected + 1 :]) == session.objects:
             session = replace(session, objects=before, past=session.past[:-1])
     return _changed(session, typed)

@@ -115,6 +115,14 @@ class DiameterTyped:
 
 
 @dataclass(frozen=True)
+class ContactPlaced:
+    """Where a tool is to touch: turned about the axis from the camera's side, and along it from the middle."""
+
+    angle_deg: float
+    along_mm: float
+
+
+@dataclass(frozen=True)
 class SectionToggled:
     """A section of the second cut is taken out of the measurement, or put back."""
 
@@ -151,6 +159,7 @@ Event = (
     | KindChosen
     | DirectionChosen
     | DiameterTyped
+    | ContactPlaced
     | SectionToggled
     | SectionsRestored
     | Reconstructed

@@ -2,6 +2,7 @@
 
 from app.events import Refused
 from app.session import Session, sentence
+from app.tool_text import trouble
 from rotrecon.outcome import Fit, FitFailure
 from rotrecon.reconstruction import Reconstruction
 from rotrecon.tools import NoTool
@@ -18,6 +19,9 @@ def warning(session: Session) -> str | None:
             return sentence(why)
         case Reconstruction(tool=NoTool(unsure=(why, *_))):
             return sentence(why)
+        case Reconstruction() as result:
+            why = trouble(result)
+            return None if why is None else sentence(why)
         case _:
             return None
 

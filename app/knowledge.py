@@ -1,15 +1,16 @@
 """What the operator says is known of an object before it is measured: its kind, how its axis lies, its diameter."""
 
 from dataclasses import replace
-from math import isfinite
+from math import isfinite, radians
 from typing import get_args
 
-from app.events import DiameterTyped, DirectionChosen, KindChosen
+from app.events import ContactPlaced, DiameterTyped, DirectionChosen, KindChosen
 from app.object_drawing import UNKNOWN_MM, ObjectDrawing
+from rotrecon.contact import MOST_ANGLE_RAD, Place
 from rotrecon.drawing import Direction
 from rotrecon.primitives import KINDS
 
-Said = KindChosen | DirectionChosen | DiameterTyped
+Said = ContactPlaced | KindChosen | DirectionChosen | DiameterTyped
 DIRECTION_NAMES: dict[Direction, str] = {
     "free": "in any way",
     "vertical": "vertical",
@@ -28,6 +29,9 @@ def with_knowledge(drawn: ObjectDrawing, said: Said) -> ObjectDrawing:
             return replace(drawn, direction=direction)
         case DiameterTyped(from_mm, to_mm) if all(isfinite(mm) and mm >= 0 for mm in (from_mm, to_mm)):
             return replace(drawn, diameter_mm=(from_mm, to_mm))
+        case ContactPlaced(angle_deg, along_mm) if isfinite(angle_deg) and isfinite(along_mm):
+            angle_rad = min(max(radians(angle_deg), -MOST_ANGLE_RAD), MOST_ANGLE_RAD)
+            return replace(drawn, contact=Place(angle_rad, along_mm / 1000))
         case _:
             return drawn
 

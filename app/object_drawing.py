@@ -4,6 +4,7 @@ from dataclasses import dataclass, replace
 from math import copysign, inf, isfinite
 from typing import Literal
 
+from rotrecon.contact import PROPOSED, Place
 from rotrecon.drawing import AreaOfInterest, Constraints, Direction, Drawing, ObjectAxis
 from rotrecon.primitives import Kind
 
@@ -27,6 +28,8 @@ class ObjectDrawing:
     diameter_mm: tuple[float, float] = UNKNOWN_MM
     """Its limits as they were typed, in either order; 0 is none."""
     direction: Direction = "free"
+    contact: Place = PROPOSED
+    """Where a tool is to touch it."""
     proposed: bool = False
     """Whether the axis is the program's, and not drawn: then it belongs to the area it was proposed for."""
 
@@ -43,7 +46,7 @@ class ObjectDrawing:
         """The drawing that can be measured, once the area is there; where it has no axis, one is proposed."""
         if self.area is None:
             return None
-        return Drawing(self.area, self.axis, self.kind, self.excluded_sections, self.constraints)
+        return Drawing(self.area, self.axis, self.kind, self.excluded_sections, self.constraints, self.contact)
 
     @property
     def middle_px(self) -> Pixel | None:
@@ -63,7 +66,7 @@ def with_area(drawn: ObjectDrawing, area: AreaOfInterest) -> ObjectDrawing:
         for value, along in zip(middle, zip(*area.vertices_px, strict=True), strict=True):
             if not min(along) <= value <= max(along):
                 axis = None
-    return replace(drawn, area=area, axis=axis)
+    return replace(drawn, area=area, axis=axis, contact=PROPOSED)
 
 
 def with_axis(drawn: ObjectDrawing, axis: ObjectAxis, proposed: bool = False) -> ObjectDrawing:

@@ -8,8 +8,10 @@ from app.object_drawing import Pixel
 
 ViewName = Literal["camera", "3D"]
 LayerName = Literal["segmentation", "close pixels", "accepted pixels", "depth map", "model", "picture"]
+OverlayName = Literal["nothing", "tool", "residuals"]
 VIEWS: tuple[ViewName, ...] = get_args(ViewName)
 LAYERS: tuple[LayerName, ...] = get_args(LayerName)
+OVERLAYS: tuple[OverlayName, ...] = get_args(OverlayName)
 ZOOM_STEP = 1.5
 LARGEST_ZOOM = 16.0
 """A pixel is then as large as a fingertip."""
@@ -30,6 +32,14 @@ class PageState:
     section: int | None = None
     """The section looked at; None for the one in the middle."""
     dark: bool = True
+    overlay: OverlayName = "nothing"
+    """What is drawn over the picture besides outline and section."""
+    step: int = 0
+    """The step of the segmentation that is looked at."""
+    measuring: bool = False
+    """Whether clicks on the picture are the ends of a distance, and not corners of an area."""
+    ends_px: tuple[Pixel, ...] = ()
+    """Of that distance: none, one or two."""
 
 
 @dataclass(frozen=True)
@@ -82,6 +92,28 @@ class DarkChosen:
     dark: bool
 
 
+@dataclass(frozen=True)
+class OverlayChosen:
+    overlay: OverlayName
+
+
+@dataclass(frozen=True)
+class StepChosen:
+    step: int
+
+
+@dataclass(frozen=True)
+class MeasuringChosen:
+    measuring: bool
+
+
+@dataclass(frozen=True)
+class EndPointed:
+    """An end of a distance: the first of a new one when there were two."""
+
+    point_px: Pixel
+
+
 PageEvent = (
     ViewChosen
     | OpacityChosen
@@ -92,6 +124,10 @@ PageEvent = (
     | SectionPointed
     | SectionStepped
     | DarkChosen
+    | OverlayChosen
+    | StepChosen
+    | MeasuringChosen
+    | EndPointed
 )
 
 
@@ -117,6 +153,14 @@ def page_step(page: PageState, event: PageEvent, section_count: int, middle_px: 
             return replace(page, section=_within(section_shown(page, section_count) + by, section_count))
         case DarkChosen(dark):
             return replace(page, dark=dark)
+        case OverlayChosen(overlay) if overlay in OVERLAYS:
+            return replace(page, overlay=overlay)
+        case StepChosen(step):
+            return replace(page, step=max(step, 0))
+        case MeasuringChosen(measuring):
+            return replace(page, measuring=bool(measuring), ends_px=())
+        case EndPointed(point) if page.measuring and all(isfinite(value) for value in point):
+            return replace(page, ends_px=(point,) if len(page.ends_px) == 2 else (*page.ends_px, point))
         case _:
             return page
 

@@ -11,8 +11,10 @@ from app.deciding.events import DecisionEvent
 from app.deciding.states import Said
 from app.decision_panel import DecisionPanel
 from app.events import Event, HandleMoved, PointerDragged, VertexClicked
+from app.inspection_panel import InspectionPanel
 from app.object_drawing import Part, Pixel, on_frame
 from app.page import (
+    EndPointed,
     PageEvent,
     PageState,
     PointTouched,
@@ -51,12 +53,13 @@ class PageView:
         self._pixels = PixelFinder(pictures.frame)
         self._panels = PagePanels(client, shared, pictures, post)
         self._decision = DecisionPanel(client, shared.decision, post)
+        self._inspection = InspectionPanel(client.gui, shared.stages, pictures, post)
         self._camera_view = CameraView(
             client, pictures.frame, pictures.frame.image, self._handle_dragged, self._dragged
         )
         self._world = client.scene.add_frame("/world", show_axes=False)
         self._drag_start_px: Pixel = (0.0, 0.0)
-        self._picture_of: object = (None, 0.0, None)
+        self._picture_of: object = (None, 0.0, None, "nothing", ())
         self._lit: object = None
         self._view = ""
         self._dark = True
@@ -107,6 +110,8 @@ class PageView:
         self._panels.show(result, page, section, session.shown.excluded_sections, moving)
         self._decision.show(session)
         self._say(session)
+        if not moving:
+            self._inspection.show(result, page, section)
 
     def _show_view(self) -> None:
         """Change the standpoint, and what is seen from it, when the other view was chosen."""
@@ -132,10 +137,12 @@ class PageView:
 
     def _show_picture(self, result: Reconstruction | None, section: int) -> None:
         opacity = self.state.depth_opacity
-        key = (result, opacity, None if result is None else section)
+        overlay, ends_px = self.state.overlay, self.state.ends_px
+        key = (result, opacity, None if result is None else section, overlay, ends_px)
         if key != self._picture_of:
             self._picture_of = key
-            self._camera_view.picture.image = self._pictures.camera_view(result, opacity, section)
+            image = self._pictures.camera_view(result, opacity, section, overlay)
+            self._camera_view.picture.image = self._pictures.with_ends(image, ends_px) if ends_px else image
 
     def _show_notice(self, session: Session) -> None:
         """Tell of a failure, and take that away when it is no longer one of what is shown."""
@@ -160,6 +167,9 @@ class PageView:
     async def _clicked(self, event: SceneNodePointerEvent) -> None:
         point = self._pixels.clicked(event)
         self._touched(point)
+        if self.state.measuring:
+            self._post(EndPointed(point))
+            return
         self._post(VertexClicked(point, self._camera_view.closing_reach_px(self.state)))
 
     async def _pointed(self, event: SceneNodePointerEvent) -> None:

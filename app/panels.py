@@ -22,14 +22,16 @@ from app.events import (
 )
 from app.knowledge import DIRECTION_NAMES, knowledge_text
 from app.object_drawing import UNKNOWN_MM
+from app.origins import origins_html
 from app.page import PageEvent, SectionStepped, ViewChosen, Zoomed
 from app.result_text import hint_html, result_html, why_html
 from app.session import Session
 from app.static_files import static_text
+from app.tool_panel import ToolPanel
 from rotrecon.primitives import KINDS
 
 PANEL_WIDTH_PX = 390
-TABS = ("Decision", "Sections", "Picture", "Why", "Buttons", "Help")
+TABS = ("Decision", "Sections", "Stages", "Tool", "Picture", "Why", "Buttons", "Help")
 AUTO = "auto"
 KNOWN = "What is known"
 DIRECTIONS = {name: DirectionChosen(direction) for direction, name in DIRECTION_NAMES.items()}
@@ -79,11 +81,15 @@ class Panels:
         self._add_buttons("View", VIEW)
         self._add_keys()
         panel = self._gui.add_panel()
-        self.decision, self.sections, self.picture, why, draw, keys = (panel.add_tab(name) for name in TABS)
+        self.decision, self.sections, self.stages, tool, self.picture, why, draw, keys = map(panel.add_tab, TABS)
         with draw:
             self._add_controls()
+        with tool:
+            self._tools = ToolPanel(self._gui, self._choosing)
         with why:
             self._why = self._gui.add_html("")
+            with self._gui.add_folder("Where does this number come from?", expand_by_default=False):
+                self._origins = self._gui.add_html(origins_html())
         with keys:
             about = "".join(f"<p>{escape(line)}</p>" for line in (name, *notes))
             self._gui.add_html(static_text("help.html") + f'<div class="rr-help"><h4>Scene</h4>{about}</div>')
@@ -102,6 +108,7 @@ class Panels:
         _set(self._tool, "value", session.tool.capitalize())
         if session.preview is None:
             _set(self._why, "content", why_html(session))
+            self._tools.show(session)
 
     def _add_knowledge(self) -> None:
         """Folded away: what is in force stands in its label."""

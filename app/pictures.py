@@ -5,26 +5,34 @@ from functools import cached_property
 import cv2
 import numpy as np
 
+from app.inspection import grasp_in, line_in, residuals_in
 from app.object_drawing import Pixel
-from app.page import LayerName
+from app.page import LayerName, OverlayName
 from rotrecon.arrays import Bytes
 from rotrecon.frame import Frame
+from rotrecon.grasp_overlay import with_grasp
 from rotrecon.outcome import Fit
 from rotrecon.overlay import (
     Stage,
     blend,
     depth_colors,
     depth_range_m,
+    first_cut_line,
     outlines,
     section_pixels,
     with_outlines,
     with_segmentation,
 )
 from rotrecon.reconstruction import Reconstruction
+from rotrecon.residuals import with_residuals
 
 STAGES: dict[LayerName, Stage] = {"close pixels": "close", "accepted pixels": "accepted", "segmentation": "object"}
 """The layers that are figure 3 a, b and c of the paper."""
 SECTION_COLOR = (204, 121, 167)
+RULER_COLOR = (240, 228, 66)
+KEPT_COLOR, GONE_COLOR, BACK_COLOR = (60, 147, 208), (213, 94, 0), (0, 158, 115)
+"""Of a line of pixels: what a step left, took away and brought back."""
+STEP_HEIGHT_PX = 240
 PANEL_WIDTH_PX = 480
 """Width that pictures in a panel are sent with: that of the panel, on a screen of high density a little less."""
 CROP_PX = 72
@@ -47,12 +55,42 @@ class Pictures:
         """The depth map in colours, the picture itself where there is no depth."""
         return depth_colors(self.frame.depth_m, self.depth_range_m)
 
-    def camera_view(self, result: Reconstruction | None, opacity: float, section: int) -> Bytes:
-        """The picture that is drawn on: depth blended in, the solid's outline, and one section lit."""
+    def camera_view(
+        self, result: Reconstruction | None, opacity: float, section: int, overlay: OverlayName = "nothing"
+    ) -> Bytes:
+        """The picture that is drawn on: depth blended in, the solid's outline, a section lit, and what is over it."""
         image = self.frame.image
         if opacity > 0:
             image = blend(image, self.depth_layer, np.isfinite(self.frame.depth_m), opacity)
-        return image if result is None else _with_section(with_outlines(image, outlines(result)), result, section)
+        if result is None:
+            return image
+        image = _with_overlay(image, result, overlay)
+        return _with_section(with_outlines(image, outlines(result)), result, section)
+
+    def with_ends(self, image: Bytes, ends_px: tuple[Pixel, ...]) -> Bytes:
+        """A picture with the ends of a distance, joined when there are two."""
+        drawn = image.copy()
+        places = [(round(u), round(v)) for u, v in ends_px]
+        for place in places:
+            cv2.drawMarker(drawn, place, RULER_COLOR, cv2.MARKER_CROSS, 13, 2)
+        if len(places) == 2:
+            cv2.line(drawn, places[0], places[1], RULER_COLOR, 1, cv2.LINE_AA)
+        return drawn
+
+    def step(self, result: Reconstruction, section: int, step: int) -> Bytes | None:
+        """The object at one step of the segmentation, one line of pixels lit; None for a section without a line."""
+        line, row = line_in(result, section), first_cut_line(result, section)
+        if line is None or row is None:
+            return None
+        runs = result.settings.layers
+        stage: Stage = "close" if step < runs else "object" if step >= len(line.stages) - 1 else "accepted"
+        image = with_segmentation(self.frame.image, result, stage)
+        now = line.stages[min(step, len(line.stages) - 1)]
+        pixel = result.segments.pixel[row]
+        for which, color in ((now.members, KEPT_COLOR), (now.removed, GONE_COLOR), (now.added, BACK_COLOR)):
+            image.reshape(-1, 3)[pixel[which]] = color
+        v, u = np.divmod(result.segments.pixel[result.segments.inside], image.shape[1])
+        return _enlarged(image[max(v.min() - 8, 0) : v.max() + 9, max(u.min() - 8, 0) : u.max() + 9])
 
     def television(self, result: Reconstruction | None, layer: LayerName) -> Bytes:
         """The frame as one stage of the method leaves it."""
@@ -88,3 +126,20 @@ def _with_section(image: Bytes, result: Reconstruction, section: int) -> Bytes:
     u, v = section_pixels(result, section).astype(np.int32).T
     lit[v, u] = SECTION_COLOR
     return lit
+
+
+def _with_overlay(image: Bytes, result: Reconstruction, overlay: OverlayName) -> Bytes:
+    """The picture with the tool at its place, or with the residuals in colours."""
+    if overlay == "tool":
+        grasp = grasp_in(result)
+        return image if grasp is None else with_grasp(image, grasp, result.frame)
+    residuals = residuals_in(result) if overlay == "residuals" else None
+    return image if residuals is None else with_residuals(image, residuals)
+
+
+def _enlarged(image: Bytes) -> Bytes:
+    """A cut-out as large as a panel has room for, its pixels sharp."""
+    height, width = image.shape[:2]
+    scale = min(PANEL_WIDTH_PX / width, STEP_HEIGHT_PX / height)
+    size = (max(round(width * scale), 1), max(round(height * scale), 1))
+    return np.asarray(cv2.resize(image, size, interpolation=cv2.INTER_NEAREST), dtype=np.uint8)

@@ -5,6 +5,7 @@ from numpy.typing import NDArray
 from viser import ClientHandle, SceneNodePointerEvent, ViserServer
 from viser import transforms as tf
 
+from app.envelope_view import EnvelopeView
 from app.limit_lines import limit_lines
 from app.page import SectionPointed
 from app.panels import Post
@@ -51,6 +52,8 @@ class SceneView:
             visible=False,
         )
 
+        self._envelope = EnvelopeView(self._scene, self._frame, self._point_size_m())
+
     def show(self, result: Reconstruction | None) -> None:
         """Show what was segmented, and the solid with its axis, contact point and approach, if there is one."""
         if result is self._shown:
@@ -64,6 +67,7 @@ class SceneView:
         solid = None if result is None else result.solid
         self._show_solid(solid)
         self._show_tool(None if result is None else result.tool, solid)
+        self._envelope.show(result)
 
     def light_section(self, client: ClientHandle, result: Reconstruction | None, section: int) -> None:
         """Light one section on one page."""

@@ -3,6 +3,7 @@
 import numpy as np
 
 from app.charts import LIT, ODD, PROFILE, USED, section_count
+from app.wording import measured
 from rotrecon.arrays import Floats
 from rotrecon.circles import SectionState
 from rotrecon.outcome import Fit
@@ -35,7 +36,8 @@ def section_text(result: Reconstruction | None, section: int) -> str:
         return place
     residuals_mm = 1000 * result.sections.residuals_m(section, result.second_cut.circles)
     off_mm = float(np.sqrt(np.mean(residuals_mm**2)))
-    return f"{place}. Radius {radius_mm:.1f} mm; its {len(residuals_mm)} pixels lie {off_mm:.2f} mm off (RMS)."
+    radius = measured(radius_mm, radius_interval_mm(result, section), " mm")
+    return f"{place}. Radius {radius}; its {len(residuals_mm)} pixels lie {off_mm:.2f} mm off (RMS)."
 
 
 def _why_none(result: Reconstruction) -> str:
@@ -71,13 +73,35 @@ def section_svg(result: Reconstruction | None, section: int) -> str:
     corner, size = low - np.array([6, 12]) * dot, high - low + np.array([12, 18]) * dot
     drawn = points[:: len(points) // MOST_DOTS + 1]
     radius = 1000 * float(circles.radius_m[section])
-    shapes = _fitted_circle(center, radius, drawn, dot) if np.isfinite(radius) else []
+    shapes = (
+        _interval(result, section, center) + _fitted_circle(center, radius, drawn, dot) if np.isfinite(radius) else []
+    )
     shapes += [_circle(u, v, 0.8 * dot, f'fill="{USED}"') for u, v in drawn]
     for name, (u, v) in zip("SCF", base, strict=True) if result.settings.method == "paper" else ():
         if np.isfinite(u):
             shapes += [_circle(u, v, 1.8 * dot, f'fill="{LIT}"'), _label(name, u, v - 2.8 * dot, 7 * dot)]
     box = " ".join(f"{value:.3f}" for value in (*corner, *size))
     return f'<svg class="rr-section" viewBox="{box}">{"".join(shapes)}</svg>'
+
+
+def radius_interval_mm(result: Reconstruction, section: int) -> tuple[float, float] | None:
+    """The 95 % interval of a section's own radius; None where there is none."""
+    if not isinstance(result.fit, Fit) or result.fit.evidence is None:
+        return None
+    low, high = (
+        1000 * float(of[section]) for of in (result.fit.evidence.radius_low_m, result.fit.evidence.radius_high_m)
+    )
+    return (low, high) if np.isfinite([low, high]).all() else None
+
+
+def _interval(result: Reconstruction, section: int, center: Floats) -> list[str]:
+    """The ring that holds the circle in 95 of 100 cases."""
+    interval = radius_interval_mm(result, section)
+    if interval is None:
+        return []
+    low, high = interval
+    style = f'fill="none" stroke="{PROFILE}" stroke-opacity="0.3" stroke-width="{high - low:.3f}"'
+    return [_circle(center[0], center[1], (low + high) / 2, style)]
 
 
 def _fitted_circle(center: Floats, radius: float, points: Floats, dot: float) -> list[str]:

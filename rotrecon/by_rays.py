@@ -15,9 +15,10 @@ from rotrecon.outcome import Evidence, FailureReason, Fit, FitFailure, PartOf, R
 from rotrecon.primitives import Primitive
 from rotrecon.rays.hypotheses import Held, Scene, scene_of
 from rotrecon.rays.patch import Patch, patch_of
+from rotrecon.rays.ray_fit import RayFit
 from rotrecon.rays.robust import Ranked, rank
 from rotrecon.rays.starts import robust_line
-from rotrecon.rays.surfaces import Lateral
+from rotrecon.rays.surfaces import Ball, Lateral
 from rotrecon.recognition import candidates_of, chosen_of, intervals_of, is_possible, solid_of
 from rotrecon.reconstruction import Cut, Reconstruction
 from rotrecon.section_radii import SectionRadii, section_radii
@@ -210,14 +211,15 @@ def _reconstruction(segmented: Reconstruction, found: _Found, radii: SectionRadi
     cut = Cut(radii.circles, FittedAxis(found.axis.point_m, found.axis.direction, radii.circles.used))
     result = replace(segmented, fit=fit, sections=radii.sections, second_cut=cut, candidates=candidates)
     in_base = solid.moved(T_base_camera)
-    if doubts:
-        return replace(result, solid=in_base, tool=NoTool(doubts))
     readings = [_reading(found, chosen, in_base, middle_m)]
     for one in rivals:
         other = solid_of(one, None, found.ends_m, found.axis.direction, settings)
         readings.append(_reading(found, one, other.moved(T_base_camera), middle_m))
-    tool = propose_tool(tuple(readings), T_base_camera[:3, 3], fit.concave, settings.tools)
-    return replace(result, solid=in_base, tool=tool)
+    result = replace(result, solid=in_base, readings=tuple(readings))
+    if doubts:
+        return replace(result, tool=NoTool(doubts))
+    tool = propose_tool(result.readings, T_base_camera[:3, 3], fit.concave, settings.tools, segmented.drawing.contact)
+    return replace(result, tool=tool)
 
 
 def _reading(found: _Found, one: Ranked, solid: Primitive, middle_m: float) -> Reading:
@@ -254,11 +256,21 @@ def _evidence(
         noise_px=None if baseline_m is None else noise_m * scene.patch.focal_px * baseline_m / depth_m**2,
         correlation_px=max(noise.correlation_px, fit.likeness.length_px if fit.likeness.alike > 0 else 0.0),
         noise_stated=noise.stated,
+        depth_weight=fit.likeness.independent_share / fit.sigma**2,
+        outline_weight=sum(share * float((1.0 / outline.sigma_px**2).sum()) for outline, share in fit.outlines),
+        doubt_share=_doubt_share(fit),
         open_ends=None if found.extent is None else (found.extent.low_open, found.extent.high_open),
         parts=tuple(_told(part, middle_m) for part in radii.parts),
         radius_low_m=radii.low_m,
         radius_high_m=radii.high_m,
     )
+
+
+def _doubt_share(fit: RayFit) -> float:
+    """Of the variance of the radius at the surface's centre, from 0 to 1."""
+    place = 3 if isinstance(fit.surface, Ball) else 4
+    doubt = np.broadcast_to(fit.doubt, fit.covariance.shape)[place, place]
+    return float(np.clip(doubt / max(fit.covariance[place, place], np.finfo(float).tiny), 0.0, 1.0))
 
 
 def _told(part: Part, middle_m: float) -> PartOf:

@@ -7,6 +7,7 @@ import cv2
 import numpy as np
 
 from rotrecon.arrays import Bools, Bytes, Floats, Indices, freeze
+from rotrecon.contact import PROPOSED, Place
 from rotrecon.primitives import Kind
 
 
@@ -61,6 +62,8 @@ class Drawing:
     excluded_sections: frozenset[int] = frozenset()
     """Sections of the second cut that the operator took out by hand."""
     constraints: Constraints = Constraints()
+    contact: Place = PROPOSED
+    """Where a tool is to touch the object."""
 
     @property
     def stroke(self) -> ObjectAxis:

@@ -103,6 +103,12 @@ class Evidence:
     """How far its errors are alike."""
     noise_stated: bool
     """By the scene; else estimated."""
+    depth_weight: float
+    """Information of one pixel's depth, for errors that are alike less than one, over that of the stated noise."""
+    outline_weight: float
+    """Information, 1 / px^2, of all that is seen of the outline; 0 where it has no say."""
+    doubt_share: float
+    """Of the variance of the radius: what other ways to it differ by, rather than noise."""
     open_ends: tuple[bool, bool] | None
     """Whether it goes on beyond the area at its start and its end along the stroke; None for a sphere."""
     parts: tuple[PartOf, ...]

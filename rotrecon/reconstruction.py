@@ -10,7 +10,7 @@ from rotrecon.outcome import Candidate, Fit, FitFailure
 from rotrecon.primitives import Primitive
 from rotrecon.segmentation import Segmentation
 from rotrecon.settings import Settings
-from rotrecon.tools import NoTool, ToolProposal
+from rotrecon.tools import NoTool, Reading, ToolProposal
 
 
 @dataclass(frozen=True, eq=False)
@@ -45,3 +45,5 @@ class Reconstruction:
     solid: Primitive | None = None
     """The fitted solid in base coordinates."""
     tool: ToolProposal | NoTool = NoTool(())
+    readings: tuple[Reading, ...] = ()
+    """What the object may be, in base coordinates, the chosen reading first: what the tool was chosen for."""

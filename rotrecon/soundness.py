@@ -124,7 +124,7 @@ def _beyond(
     surface = fit.surface
     if surface.side > 0:
         return (0.0, 0.0), (0.0, 0.0)
-    limbs = limbs_of(surface, patch, np.linspace(*heights_m, LIMBS))
+    limbs = limbs_of(surface, patch.camera, np.linspace(*heights_m, LIMBS))
     side = limbs.side if isinstance(surface, Lateral) else (limbs.along > np.pi).astype(np.int32)
     place = limbs.point_px[:, None] + np.array(BEYOND_PX)[:, None] * limbs.normal_px[:, None]
     pixel = patch.pixel_of(place.reshape(-1, 2)).reshape(-1, len(BEYOND_PX))

@@ -7,6 +7,7 @@ from math import degrees, inf
 import numpy as np
 
 from rotrecon.arrays import Floats, freeze
+from rotrecon.contact import PROPOSED, Place, contact_on
 from rotrecon.outcome import Range
 from rotrecon.primitives import Frustum, Primitive, Revolution, in_words
 from rotrecon.tool_table import Tool, ToolTable
@@ -16,6 +17,9 @@ STRAIGHT_RAD: Range = (-0.05, 0.05)
 steel (0.05), below which jaws do not slip along a taper."""
 WHICH_KIND = "look at it from elsewhere, or choose its kind if you know it"
 """What settles which of the readings is the true one."""
+
+NEARER = "look at it from nearer, or from the side"
+"""What narrows the interval of a size."""
 
 
 @dataclass(frozen=True, eq=False)
@@ -66,6 +70,21 @@ class NoTool:
 
 
 @dataclass(frozen=True)
+class Judged:
+    """What speaks against one tool."""
+
+    why: str
+    """In words and with what settles it; empty for a tool that fits."""
+    is_out: bool
+    """Whether it is ruled out, whatever the object may be."""
+
+    @property
+    def fits(self) -> bool:
+        """Whatever the object may be."""
+        return not self.why
+
+
+@dataclass(frozen=True)
 class _Objection:
     """What speaks against a tool."""
 
@@ -77,7 +96,11 @@ class _Objection:
 
 
 def propose_tool(
-    readings: tuple[Reading, ...], camera_center_m: Floats, concave: bool, tools: ToolTable
+    readings: tuple[Reading, ...],
+    camera_center_m: Floats,
+    concave: bool,
+    tools: ToolTable,
+    place: Place = PROPOSED,
 ) -> ToolProposal | NoTool:
     """The first tool of the table that fits whatever the object may be, seen by a camera at `camera_center_m` (3,).
 
@@ -90,26 +113,22 @@ def propose_tool(
         raise ValueError("there is no reading to choose a tool for")
     if concave:
         return NoTool(("the surface is seen from inside, and no tool works there; draw an object seen from outside",))
-    contact_m, approach = _contact(readings[0].solid, camera_center_m)
+    contact = contact_on(readings[0].solid, camera_center_m, place)
     reasons: list[str] = []
     unsure: list[str] = []
     for tool in tools:
-        objections = [_objections(tool, reading, contact_m) for reading in readings]
-        if not any(objections):
-            return ToolProposal(tool, contact_m, approach, tuple(unsure))
-        verdict, is_out = _verdict(objections)
-        reasons.append(f"{tool.name}: {verdict}")
-        unsure += [] if is_out else reasons[-1:]
+        judged = judge(tool, readings, contact.point_m)
+        if judged.fits:
+            return ToolProposal(tool, contact.point_m, contact.approach, tuple(unsure))
+        reasons.append(f"{tool.name}: {judged.why}")
+        unsure += [] if judged.is_out else reasons[-1:]
     return NoTool(tuple(reasons), tuple(unsure))
 
 
-def _contact(solid: Primitive, camera_center_m: Floats) -> tuple[Floats, Floats]:
-    """Contact point and approach (3,): toward the middle, square to the axis unless the camera looks along it."""
-    sight = solid.center_m - camera_center_m
-    approach = sight if solid.kind == "sphere" else sight - (sight @ solid.direction) * solid.direction
-    length = float(np.linalg.norm(approach))
-    approach = approach / length if length > 0 else np.array([0.0, 0.0, 1.0])
-    return solid.center_m - float(solid.radius_at(0.0)) * approach, approach
+def judge(tool: Tool, readings: Sequence[Reading], contact_m: Floats) -> Judged:
+    """What speaks against a tool at a contact (3,), for all that the object may be."""
+    objections = [_objections(tool, reading, contact_m) for reading in readings]
+    return Judged(*_verdict(objections)) if any(objections) else Judged("", False)
 
 
 def _verdict(objections: Sequence[Sequence[_Objection]]) -> tuple[str, bool]:
@@ -126,7 +145,13 @@ def _verdict(objections: Sequence[Sequence[_Objection]]) -> tuple[str, bool]:
 
 def _objections(tool: Tool, reading: Reading, contact_m: Floats) -> Sequence[_Objection]:
     """What speaks against a tool for one reading: the first that is certain, or else all; nothing when it fits."""
-    checks = (_kind(tool, reading), _diameter(tool, reading), _length(tool, reading), _reach(tool, contact_m))
+    checks = (
+        _kind(tool, reading),
+        _diameter(tool, reading),
+        _depth(tool, reading),
+        _length(tool, reading),
+        _reach(tool, contact_m),
+    )
     objections = [objection for objection in checks if objection is not None]
     return [objection for objection in objections if objection.certain][:1] or objections
 
@@ -151,14 +176,28 @@ def _kind(tool: Tool, reading: Reading) -> _Objection | None:
 def _diameter(tool: Tool, reading: Reading) -> _Objection | None:
     """A general solid of revolution must not be wider than the tool anywhere: how broad its jaws are is not known."""
     low, high = tool.diameter_mm
-    middle_mm, widest_mm = _diameter_mm(reading), _widest_mm(reading)
-    if middle_mm[0] >= low and widest_mm[1] <= high:
+    middle_mm, most_mm = diameter_mm(reading), widest_mm(reading)
+    if middle_mm[0] >= low and most_mm[1] <= high:
         return None
-    at_widest = "" if widest_mm == middle_mm else f" in the middle and {_range(widest_mm)} mm where it is widest"
+    at_widest = "" if most_mm == middle_mm else f" in the middle and {_range(most_mm)} mm where it is widest"
     why = f"takes {low:g} to {high:g} mm, the {in_words(reading.solid.kind)} has {_range(middle_mm)} mm{at_widest}"
-    if middle_mm[1] < low or widest_mm[0] > high:
+    if middle_mm[1] < low or most_mm[0] > high:
         return _Objection(why)
-    return _Objection(why, "look at it from nearer, or from the side", certain=False)
+    return _Objection(why, NEARER, certain=False)
+
+
+def _depth(tool: Tool, reading: Reading) -> _Objection | None:
+    """Jaws that do not get past the middle close in front of it, and push the object away."""
+    if tool.depth_mm is None:
+        return None
+    low_mm, high_mm = (diameter / 2 for diameter in widest_mm(reading))
+    if high_mm <= tool.depth_mm:
+        return None
+    middle = f"the middle of the {in_words(reading.solid.kind)} {_range((low_mm, high_mm))} mm"
+    why = f"reaches {tool.depth_mm:g} mm deep, {middle}"
+    if low_mm > tool.depth_mm:
+        return _Objection(why)
+    return _Objection(why, NEARER, certain=False)
 
 
 def _length(tool: Tool, reading: Reading) -> _Objection | None:
@@ -178,14 +217,15 @@ def _reach(tool: Tool, contact_m: Floats) -> _Objection | None:
     return _Objection(f"reaches {tool.reach_m:g} m, the object is {distance_m:.2f} m away")
 
 
-def _diameter_mm(reading: Reading) -> Range:
+def diameter_mm(reading: Reading) -> Range:
+    """Lowest and highest diameter in the middle."""
     low, high = reading.diameter_m or (2 * float(reading.solid.radius_at(0.0)),) * 2
     return 1000 * low, 1000 * high
 
 
-def _widest_mm(reading: Reading) -> Range:
+def widest_mm(reading: Reading) -> Range:
     """Of a general solid of revolution where it is widest, off by as much as in the middle; of others in the middle."""
-    low, high = _diameter_mm(reading)
+    low, high = diameter_mm(reading)
     solid = reading.solid
     more = 2000 * (float(solid.radii_m.max()) - solid.radius_m) if isinstance(solid, Revolution) else 0.0
     return low + more, high + more
@@ -200,7 +240,7 @@ def _length_over_diameter(reading: Reading) -> Range:
     low, high = reading.solid.ends
     if reading.solid.kind == "sphere":
         return 1.0, 1.0
-    thin_mm, thick_mm = _widest_mm(reading)
+    thin_mm, thick_mm = widest_mm(reading)
     short_m, long_m = reading.length_m or (high - low,) * 2
     return 1000 * short_m / thick_mm if thick_mm > 0 else inf, 1000 * long_m / thin_mm if thin_mm > 0 else inf
 

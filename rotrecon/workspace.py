@@ -39,3 +39,16 @@ def available(points_m: Cloud, T_base_camera: Floats, workspace: Workspace) -> B
         for axis, (low, high) in enumerate(workspace.box_m.T):
             usable &= (in_base[..., axis] >= low) & (in_base[..., axis] <= high)
     return usable
+
+
+def out_of_reach(point_m: Floats, workspace: Workspace) -> str | None:
+    """Why the arm cannot be at a point (3,) in base coordinates, in words; None where it can."""
+    away_m = float(np.linalg.norm(point_m))
+    if workspace.reach_m is not None and not workspace.reach_m[0] <= away_m <= workspace.reach_m[1]:
+        low, high = workspace.reach_m
+        return f"{away_m:.2f} m from the base, which reaches {low:g} to {high:g} m"
+    if workspace.box_m is not None:
+        for name, value, (low, high) in zip("xyz", point_m, workspace.box_m.T, strict=True):
+            if not low <= value <= high:
+                return f"{name} = {value:.2f} m, beyond the arm's box ({low:g} to {high:g} m)"
+    return None

@@ -8,7 +8,7 @@ import pytest
 ROOT = Path(__file__).parents[1]
 FORBIDDEN = {"app", "viser", "fastapi", "starlette", "uvicorn", "typer"}
 GIVEN = """
-    errors files arrays camera primitives workspace tool_table settings frame drawing outcome noise
+    errors files arrays camera primitives contact workspace tool_table settings frame drawing outcome noise
 """.split()
 MATCHED = """
     stereo.rectification stereo.canvas stereo.disparity_noise stereo.matching stereo.carrying stereo.limits
@@ -43,7 +43,7 @@ JUDGED = """
 """.split()
 BY_RAYS = [*FITTED, *TURNED, *PHOTOMETRY, *JUDGED]
 SHOWN = """
-    answer curves overlay mesh
+    clearance envelope grasp next_view answer curves overlay mesh line_stages residuals grasp_overlay distance
 """.split()
 ORDER = [*GIVEN, *MATCHED, *PROPOSED_AXIS, *SEGMENTED, *BY_SECTIONS, *BY_RAYS, "reconstruct", *SHOWN]
 """The flow of data; a stage may import only what stands before it."""
@@ -56,7 +56,7 @@ STAGES = set(
 """They know the types, and not each other."""
 TYPES = set(
     """
-    arrays camera primitives settings frame drawing outcome tool_table rays.surfaces rays.patch
+    arrays camera primitives contact settings frame drawing outcome tool_table rays.surfaces rays.patch
 """.split()
 )
 

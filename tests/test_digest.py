@@ -1,6 +1,7 @@
 """The digest that a decision is bound to: equal for equal evidence, another for whatever differs."""
 
 from collections.abc import Callable
+from copy import copy
 from dataclasses import fields, is_dataclass, replace
 from datetime import UTC, datetime, timedelta
 from typing import Any, get_args, get_type_hints
@@ -39,7 +40,7 @@ def changes(value: Any, name: str = "") -> list[Change]:
     """Every single member of nested data changed a little: a path, and what makes the changed copy."""
     if isinstance(value, msgspec.Struct) or is_dataclass(value):
         members = value.__struct_fields__ if isinstance(value, msgspec.Struct) else [f.name for f in fields(value)]
-        swap = msgspec.structs.replace if isinstance(value, msgspec.Struct) else replace
+        swap = msgspec.structs.replace if isinstance(value, msgspec.Struct) else forced
         return [
             (path, lambda made=made, member=member: swap(value, **{member: made()}))
             for member in members
@@ -52,6 +53,14 @@ def changes(value: Any, name: str = "") -> list[Change]:
             for path, made in changes(member, f"{name}[{at}]")
         ] + [(f"{name} shorter", lambda: value[:-1])]
     return [(name, lambda: other(value))]
+
+
+def forced(value: Any, **changed: Any) -> Any:
+    """A copy with another member, also one that the class itself would refuse."""
+    copied = copy(value)
+    for name, member in changed.items():
+        object.__setattr__(copied, name, member)
+    return copied
 
 
 def other(value: Any) -> Any:
@@ -67,7 +76,7 @@ def other(value: Any) -> Any:
         case int():
             return value + 1
         case float():
-            return float(np.nextafter(value, np.inf))
+            return float(np.nextafter(value, 0.0 if value == np.inf else np.inf))
         case str():
             return f"{value}x"
         case frozenset():

@@ -48,7 +48,7 @@ def test_where_there_is_no_second_cut_it_says_why(result: Reconstruction) -> Non
 
 def test_a_section_has_its_circle_and_the_three_points_only_where_it_goes_through_them(result: Reconstruction) -> None:
     text = section_text(result, 20)
-    assert "used. Radius 50.0 mm" in text
+    assert "used. Radius 50.0" in text
     assert "0.0" in text.split("lie")[1], "exact depth lies on it"
     svg = section_svg(result, 20)
     assert svg.count("<text") == (3 if result.settings.method == "paper" else 0)

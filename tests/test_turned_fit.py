@@ -148,7 +148,7 @@ def test_a_hollow_surface_is_followed_from_inside():
 def test_outlines_tie_down_what_depths_leave_open():
     body, patch, edge = seen(CONE, 0, sigma_px=2.0)
     lateral = body.lateral(slope=0.03 / 0.16)
-    limbs = limbs_of(lateral, patch, np.linspace(-0.07, 0.07, 60))
+    limbs = limbs_of(lateral, patch.camera, np.linspace(-0.07, 0.07, 60))
     outline = outline_at(limbs.point_px, np.full(len(limbs.point_px), 0.1), patch)
     depths = fit_turned(patch, edge, as_fit(lateral))
     both = fit_turned(patch, edge, as_fit(lateral, outlines=((outline, 1.0),)))

@@ -13,6 +13,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from rotrecon.camera import PinholeCamera
+from rotrecon.contact import Place
 from rotrecon.drawing import AreaOfInterest, Constraints, Drawing, ObjectAxis
 from rotrecon.frame import DepthCameraNoise, Frame, StereoEvidence, StereoNoise, View
 from rotrecon.settings import Settings
@@ -33,6 +34,7 @@ KNOWN = {
         Frame,
         ObjectAxis,
         PinholeCamera,
+        Place,
         Settings,
         StereoEvidence,
         StereoNoise,

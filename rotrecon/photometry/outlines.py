@@ -52,5 +52,5 @@ def outline_in(
     """The edges in another picture near the outline of a surface between two heights; none of one seen from inside."""
     there = carrier.surface(surface)
     patch_there = replace(patch, camera=view.camera, image=view.image)
-    limbs = limbs_of(there, patch_there, np.linspace(*heights_m, HEIGHTS))
+    limbs = limbs_of(there, view.camera, np.linspace(*heights_m, HEIGHTS))
     return edges_at(limbs, there, patch_there)

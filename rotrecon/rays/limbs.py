@@ -5,6 +5,7 @@ from dataclasses import dataclass
 import numpy as np
 
 from rotrecon.arrays import Bools, Floats, Indices, freeze
+from rotrecon.camera import PinholeCamera
 from rotrecon.drawing import CrossSegments
 from rotrecon.edges.edges import find_edges
 from rotrecon.rays.fitting import Outline
@@ -54,18 +55,18 @@ class Limbs:
         return Limbs(place, normal, side, self.along[which], self.depth_m[which])
 
 
-def limbs_of(surface: Surface, patch: Patch, heights_m: Floats) -> Limbs:
+def limbs_of(surface: Surface, camera: PinholeCamera, heights_m: Floats) -> Limbs:
     """Limb points of a surface, of a lateral one at heights (n,) along its axis; outside the picture they are left out.
 
     At a limb the surface's normal is square to the ray.
     """
     points, normals, side, along = _of_ball(surface) if isinstance(surface, Ball) else _of_lateral(surface, heights_m)
     # the tangent plane holds the camera, so that its trace in the picture is the tangent of the outline
-    K = patch.camera.K
+    K = camera.K
     normal_px = normals[:, :2] / np.array([K[0, 0], K[1, 1]])
     normal_px /= np.linalg.norm(normal_px, axis=1, keepdims=True)
-    point_px = patch.camera.project(points)
-    size = np.array([patch.camera.width, patch.camera.height])
+    point_px = camera.project(points)
+    size = np.array([camera.width, camera.height])
     with np.errstate(invalid="ignore"):
         seen = ((point_px >= 0) & (point_px <= size - 1)).all(axis=1)
     return Limbs(point_px[seen], normal_px[seen], side[seen], along[seen], points[seen, 2])
@@ -161,7 +162,7 @@ def seen_outline(surface: Surface, patch: Patch, segments: CrossSegments, length
         return nothing
     # what is beside the stroke is not at its heights where one looks along the axis
     heights_m = np.linspace(-OUTLINE_REACH, OUTLINE_REACH, OUTLINE_SECTIONS) * length_m
-    limbs = limbs_of(surface, patch, heights_m)
+    limbs = limbs_of(surface, patch.camera, heights_m)
     row = (limbs.point_px - segments.origin_px) @ segments.along
     return edges_at(limbs.chosen((row >= 0) & (row <= len(segments.pixel))), surface, patch)
 

@@ -5,7 +5,6 @@ from dataclasses import replace
 from rotrecon.arrays import Floats
 from rotrecon.axis import FittedAxis, SpaceSections
 from rotrecon.outcome import FailureReason, Fit, FitFailure
-from rotrecon.primitives import Primitive
 from rotrecon.reconstruction import Cut, Reconstruction
 from rotrecon.sections.radii import SHAPES, Shape, choose, fit_radii, rank
 from rotrecon.sections.section_cuts import cut_until_settled, without
@@ -46,20 +45,24 @@ def _with_solid(
         return replace(result, fit=fit)
     T_base_camera = result.frame.T_base_camera
     solid = fit.solid.moved(T_base_camera)
+    readings = (Reading(solid),)
     return replace(
         result,
         fit=fit,
         first_cut_radius_m=_radius_from(first, chosen.radii.shape, settings),
         solid=solid,
-        tool=_tool(fit, solid, T_base_camera[:3, 3], settings),
+        tool=_tool(fit, readings, T_base_camera[:3, 3], result),
+        readings=readings,
     )
 
 
-def _tool(fit: Fit, solid: Primitive, camera_center_m: Floats, settings: Settings) -> ToolProposal | NoTool:
+def _tool(
+    fit: Fit, readings: tuple[Reading, ...], camera_center_m: Floats, result: Reconstruction
+) -> ToolProposal | NoTool:
     """The tool for a solid in base coordinates; none for a size that is doubtful."""
     if fit.doubts:
         return NoTool(fit.doubts)
-    return propose_tool((Reading(solid),), camera_center_m, fit.concave, settings.tools)
+    return propose_tool(readings, camera_center_m, fit.concave, result.settings.tools, result.drawing.contact)
 
 
 def _radius_from(cut: Cut, shape: Shape, settings: Settings) -> float | None:

@@ -1,0 +1,158 @@
+"""The tools beside an object, the one that is shown checked at its place, and the next view, as HTML."""
+
+from html import escape
+from math import degrees
+
+from app.inspection import clearances_in, grasp_in, next_view_in
+from app.wording import from_to
+from rotrecon.clearance import Clearance
+from rotrecon.contact import PROPOSED, Place
+from rotrecon.grasp import Grasp, Hits
+from rotrecon.next_view import NextView, ViewFrom
+from rotrecon.outcome import Fit
+from rotrecon.reconstruction import Reconstruction
+from rotrecon.tools import ToolProposal
+
+STYLES = {"fits": "rr-sure", "not sure": "rr-unsure", "ruled out": "rr-out"}
+BEWARE = "At the noise of this frame. Smeared limbs, or an edge that is seen here and not from there, make it wider."
+NOTHING = '<div class="rr-why rr-dim" data-testid="tools">Measure an object first.</div>'
+
+
+def tools_html(result: Reconstruction | None) -> str:
+    """Every tool of the table: fits, not sure or ruled out, why, and how much room it leaves."""
+    found = () if result is None else clearances_in(result)
+    if result is None or not found:
+        return NOTHING
+    doubts = result.fit.doubts if isinstance(result.fit, Fit) else ()
+    doubtful = '<div class="rr-unsure">No tool is proposed: the size is doubtful, see &ldquo;Why&rdquo;.</div>'
+    rows = "".join(_tool(one, result) for one in found)
+    return f'<div class="rr-why" data-testid="tools">{doubtful if doubts else ""}{rows}</div>'
+
+
+def _tool(one: Clearance, result: Reconstruction) -> str:
+    name, verdict = escape(one.tool.name), one.verdict
+    reason = "" if not one.why else f'<div class="rr-small">{escape(one.why)}</div>'
+    view = next_view_in(result) if verdict == "not sure" else None
+    if view is not None:
+        reason += f'<div class="rr-small" data-testid="settles">{escape(next_view_text(view))}</div>'
+    room = "" if verdict == "ruled out" else f'<div class="rr-small" data-field="clearance">{clearance_text(one)}</div>'
+    return (
+        f'<div class="rr-tool" data-tool="{name}" data-verdict="{verdict}"><div class="rr-head"><b>{name}</b>'
+        f'<span class="{STYLES[verdict]}">{verdict}</span></div>{room}{reason}</div>'
+    )
+
+
+def clearance_text(one: Clearance) -> str:
+    """The room that a tool leaves, over the whole interval."""
+    low, high = one.tool.diameter_mm
+    above, below = one.above_lowest_mm[0], one.below_highest_mm[0]
+    parts = (
+        [] if one.opening_mm is None else [f"{from_to(one.opening_mm, ' mm')} free in its {one.tool.opening_mm:g} mm"]
+    )
+    parts.append(
+        f"{_margin(above)} above the least it takes ({low:g} mm), {_margin(below)} below the most ({high:g} mm)"
+    )
+    return "; ".join(parts)
+
+
+def _margin(value_mm: float) -> str:
+    return f"{value_mm:.1f} mm"
+
+
+def place_html(result: Reconstruction | None) -> str:
+    """The tool that is shown at its place: what it would hit, and whether the arm gets there."""
+    grasp = None if result is None else grasp_in(result)
+    if result is None or grasp is None:
+        return '<div class="rr-why" data-testid="place"></div>'
+    unproposed = "" if isinstance(result.tool, ToolProposal) else ", which is not proposed,"
+    checks = [*hit_lines(grasp), *reach_lines(grasp)]
+    rows = "".join(f'<li class="{"rr-good" if good else "rr-bad"}">{escape(text)}</li>' for good, text in checks)
+    return (
+        f'<div class="rr-why" data-testid="place" data-clear="{str(all(good for good, _ in checks)).lower()}">'
+        f"<h4>{escape(grasp.tool.name)}{unproposed} {place_text(grasp.place)}</h4><ul>{rows}</ul></div>"
+    )
+
+
+def trouble(result: Reconstruction) -> str | None:
+    """Why the tool that is proposed cannot be where it is placed, and what to do; None where nothing is in its way."""
+    grasp = grasp_in(result) if isinstance(result.tool, ToolProposal) else None
+    if grasp is None:
+        return None
+    bad = [text for good, text in (*reach_lines(grasp), *hit_lines(grasp)) if not good]
+    return f"{bad[0]}; turn the approach or move the contact under \u201cTool\u201d" if bad else None
+
+
+def place_text(place: Place) -> str:
+    """Where it touches."""
+    if place == PROPOSED:
+        return "where it is proposed"
+    return f"turned by {degrees(place.angle_rad):.0f}&deg;, {1000 * place.along_m:+.0f} mm along the axis"
+
+
+def hit_lines(grasp: Grasp) -> list[tuple[bool, str]]:
+    """Whether the envelope is free, at the object and on the way there, and in words what is in it."""
+    return [
+        _hits("At the object", "nothing of the cloud is in its jaws, mouth or body", grasp.at_contact),
+        _hits("On the last part of the way", "nothing of the cloud is in it", grasp.on_way),
+    ]
+
+
+def _hits(where: str, free: str, hits: Hits) -> tuple[bool, str]:
+    if hits.nearest_m is None:
+        return True, f"{where} {free}"
+    count = len(hits.pixel)
+    points = "1 point" if count == 1 else f"{count} points"
+    return (
+        False,
+        f"{where} it would hit {points} of the cloud, the nearest {1000 * hits.nearest_m:.0f} mm from the object",
+    )
+
+
+def reach_lines(grasp: Grasp) -> list[tuple[bool, str]]:
+    """Whether the arm gets there."""
+    if not grasp.unreachable:
+        return [(True, "The arm reaches contact and approach, as far as its limits are known")]
+    return [(False, f"Out of reach: {why}") for why in grasp.unreachable]
+
+
+def next_view_html(result: Reconstruction | None) -> str:
+    """Where the camera should go, in words and numbers."""
+    found = None if result is None else next_view_in(result)
+    if found is None:
+        return '<div class="rr-why rr-dim" data-testid="next-view">Nothing can be said of other views.</div>'
+    place = ", ".join(f"{value:.3f}" for value in found.best.T_base_camera[:3, 3])
+    told = [(way(view), view.distance_m, view.half_width_m) for view in found.by_distance]
+    others = "".join(
+        f"<tr><td>{escape(going)}</td><td>{away_m:.2f} m</td><td>&plusmn; {1000 * off_m:.2f} mm</td></tr>"
+        for going, away_m, off_m in told
+    )
+    return (
+        f'<div class="rr-why" data-testid="next-view" data-value="{1000 * found.best.half_width_m:.3f}">'
+        f"<p>{escape(next_view_text(found))}</p>"
+        f"<p>Camera at {place} m in base coordinates.</p>"
+        f'<p class="rr-small">{BEWARE}</p>'
+        f'<h4>The best at each distance</h4><table class="rr-whole">{others}</table></div>'
+    )
+
+
+def next_view_text(found: NextView) -> str:
+    """The best view in a sentence."""
+    best = found.best
+    beyond = f" {found.beyond_reach} other places are beyond the arm's limits." if found.beyond_reach else ""
+    if best.half_width_m >= found.now_m:
+        return f"No other view promises more: the diameter is known to ± {1000 * found.now_m:.2f} mm.{beyond}"
+    going = way(best)
+    return (
+        f"Go {going}: from {best.distance_m:.2f} m the diameter should be known to ± {1000 * best.half_width_m:.2f} mm "
+        f"instead of ± {1000 * found.now_m:.2f} mm.{beyond}"
+    )
+
+
+def way(view: ViewFrom) -> str:
+    """A change of place in words."""
+    share = 100 * abs(1 - view.nearness)
+    parts = [] if view.nearness == 1 else [f"{share:.0f} % {'nearer' if view.nearness < 1 else 'farther away'}"]
+    if view.angle_rad:
+        side = f"to the {view.toward}" if view.toward in ("left", "right") else view.toward
+        parts.append(f"{abs(degrees(view.angle_rad)):.0f} degrees round the axis {side}".strip())
+    return " and ".join(parts) or "as now"
