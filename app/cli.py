@@ -26,7 +26,7 @@ from rotrecon.errors import SceneError
 from rotrecon.frame import Frame, FrameUnavailable
 from rotrecon.outcome import FitFailure
 from rotrecon.overlay import outlines, with_outlines, with_segmentation
-from rotrecon.primitives import Kind
+from rotrecon.primitives import KINDS, Kind
 from rotrecon.reconstruct import reconstruct
 from rotrecon.reconstruction import Reconstruction
 from rotrecon.scene.formats.image import encode_png
@@ -148,7 +148,7 @@ def serve(
         Path | None, typer.Option(metavar="DIR", help="The folder of the record and the users; else your own.")
     ] = None,
     dangerous: Annotated[
-        list[Kind] | None, typer.Option(metavar="CLASS", help="Marked dangerous: you name it before it is proposed.")
+        list[str] | None, typer.Option(metavar="CLASS", help="Marked dangerous: you name it before it is proposed.")
     ] = None,
     method: MethodName = Settings.method,
     tools: ToolFile = None,
@@ -168,7 +168,7 @@ def serve(
 
     files = None if certificate is None or key is None else Certificate(certificate, key)
     people, notes = people_file(data), (*capture.notes, *matching_notes(frame))
-    deciding = DecisionSettings(dangerous=frozenset(dangerous or ()))
+    deciding = DecisionSettings(dangerous=_classes(dangerous or []))
     with closing(Record.open(data)) as record:
         serve_console(
             frame,
@@ -183,6 +183,13 @@ def serve(
             capture=capture,
             notes=notes,
         )
+
+
+def _classes(names: list[str]) -> frozenset[Kind]:
+    unknown = [name for name in names if name not in KINDS]
+    if unknown:
+        raise typer.BadParameter(f"--dangerous {unknown[0]} is no class; name one of {', '.join(KINDS)}")
+    return frozenset(kind for kind in KINDS if kind in names)
 
 
 def _demo() -> Capture:

@@ -117,8 +117,9 @@ def test_intervals_on_the_page(result: Reconstruction, session: Session, monkeyp
 
 
 def test_a_tool_that_is_not_sure_is_said_in_amber_with_what_settles_it(
-    result: Reconstruction, session: Session
+    result: Reconstruction, session: Session, monkeypatch: pytest.MonkeyPatch
 ) -> None:
+    monkeypatch.setattr(Session, "proposal_told", True)
     doubt = "cutter: takes 15 to 160 mm, the cylinder has 158.0 to 163.0 mm: not sure; look at it from nearer"
     unsure = replace(result, tool=NoTool(("saw: does not take a cylinder: ruled out", doubt), (doubt,)))
     session = step(session, Reconstructed(session.revision, unsure))
