@@ -60,7 +60,7 @@ def test_an_operator_comes_in_by_the_link_and_draws_and_a_watcher_logs_in_and_lo
     assert door_.name_of(watcher.client_id) == "Walt"
     before = console.session
     watcher.drag((60, 30), (150, 220))
-    expect(watcher.page.get_by_text("You are watching")).to_be_visible()
+    expect(watcher.page.get_by_text("You are watching", exact=True)).to_be_visible()
     watcher.page.keyboard.press("v")
     watcher.until(lambda: watcher.view.state.view == "3D", "the watcher has the 3D view")
     now = console.session
