@@ -5,7 +5,7 @@ import sys
 from contextlib import closing
 from math import inf
 from pathlib import Path
-from typing import Annotated, Literal
+from typing import Annotated, Literal, get_args
 
 import typer
 
@@ -148,7 +148,7 @@ def serve(
         Path | None, typer.Option(metavar="DIR", help="The folder of the record and the users; else your own.")
     ] = None,
     dangerous: Annotated[
-        list[Kind] | None, typer.Option(metavar="CLASS", help="Marked dangerous: you name it before it is proposed.")
+        list[str] | None, typer.Option(metavar="CLASS", help="Marked dangerous: you name it before it is proposed.")
     ] = None,
     method: MethodName = Settings.method,
     tools: ToolFile = None,
@@ -157,6 +157,7 @@ def serve(
     """Open the operator's console on a scene; the link it prints logs in."""
     if (certificate is None) != (key is None):
         raise typer.BadParameter("--certificate and --key belong together; give both")
+    deciding = DecisionSettings(dangerous=_kinds(dangerous or []))
     capture = _demo() if scene is None else read_scene(scene)
     frame = capture.frame()
     if isinstance(frame, FrameUnavailable):
@@ -168,7 +169,6 @@ def serve(
 
     files = None if certificate is None or key is None else Certificate(certificate, key)
     people, notes = people_file(data), (*capture.notes, *matching_notes(frame))
-    deciding = DecisionSettings(dangerous=frozenset(dangerous or ()))
     with closing(Record.open(data)) as record:
         serve_console(
             frame,
@@ -183,6 +183,14 @@ def serve(
             capture=capture,
             notes=notes,
         )
+
+
+def _kinds(names: list[str]) -> frozenset[Kind]:
+    kinds: dict[str, Kind] = {kind: kind for kind in get_args(Kind)}
+    for name in names:
+        if name not in kinds:
+            raise typer.BadParameter(f"--dangerous {name} is no class; name one of {', '.join(kinds)}")
+    return frozenset(kinds[name] for name in names)
 
 
 def _demo() -> Capture:
