@@ -5,7 +5,7 @@ import sys
 from contextlib import closing
 from math import inf
 from pathlib import Path
-from typing import Annotated, Literal
+from typing import Annotated, Literal, get_args
 
 import typer
 
@@ -26,7 +26,7 @@ from rotrecon.errors import SceneError
 from rotrecon.frame import Frame, FrameUnavailable
 from rotrecon.outcome import FitFailure
 from rotrecon.overlay import outlines, with_outlines, with_segmentation
-from rotrecon.primitives import KINDS, Kind
+from rotrecon.primitives import Kind
 from rotrecon.reconstruct import reconstruct
 from rotrecon.reconstruction import Reconstruction
 from rotrecon.scene.formats.image import encode_png
@@ -157,6 +157,7 @@ def serve(
     """Open the operator's console on a scene; the link it prints logs in."""
     if (certificate is None) != (key is None):
         raise typer.BadParameter("--certificate and --key belong together; give both")
+    deciding = DecisionSettings(dangerous=_kinds(dangerous or []))
     capture = _demo() if scene is None else read_scene(scene)
     frame = capture.frame()
     if isinstance(frame, FrameUnavailable):
@@ -168,7 +169,6 @@ def serve(
 
     files = None if certificate is None or key is None else Certificate(certificate, key)
     people, notes = people_file(data), (*capture.notes, *matching_notes(frame))
-    deciding = DecisionSettings(dangerous=_classes(dangerous or []))
     with closing(Record.open(data)) as record:
         serve_console(
             frame,
@@ -185,11 +185,12 @@ def serve(
         )
 
 
-def _classes(names: list[str]) -> frozenset[Kind]:
-    unknown = [name for name in names if name not in KINDS]
-    if unknown:
-        raise typer.BadParameter(f"--dangerous {unknown[0]} is no class; name one of {', '.join(KINDS)}")
-    return frozenset(kind for kind in KINDS if kind in names)
+def _kinds(names: list[str]) -> frozenset[Kind]:
+    kinds: dict[str, Kind] = {kind: kind for kind in get_args(Kind)}
+    for name in names:
+        if name not in kinds:
+            raise typer.BadParameter(f"--dangerous {name} is no class; name one of {', '.join(kinds)}")
+    return frozenset(kinds[name] for name in names)
 
 
 def _demo() -> Capture:

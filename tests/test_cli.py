@@ -3,7 +3,7 @@ import re
 import socket
 import sys
 from pathlib import Path
-from typing import get_args
+from typing import Any, get_args
 
 import cv2
 import numpy as np
@@ -31,7 +31,11 @@ def scene(tmp_path_factory: pytest.TempPathFactory) -> Path:
 
 
 @pytest.fixture
-def rotrecon(monkeypatch: pytest.MonkeyPatch, capfd: pytest.CaptureFixture[str]):
+def rotrecon(
+    monkeypatch: pytest.MonkeyPatch, capfd: pytest.CaptureFixture[str], tmp_path_factory: pytest.TempPathFactory
+):
+    monkeypatch.setenv("XDG_DATA_HOME", str(tmp_path_factory.mktemp("data")))
+
     def run(*arguments: object) -> tuple[int, str, str]:
         monkeypatch.setattr(sys, "argv", ["rotrecon", *map(str, arguments)])
         with pytest.raises(SystemExit) as stop:
@@ -251,6 +255,17 @@ def test_a_method_is_one_of_those_there_are(rotrecon, scene):
         code, _, err = rotrecon(*command, "--method", "guess")
         assert code == 2
         assert "guess" in err
+
+
+def test_serve_marks_classes_dangerous_and_keeps_a_record(rotrecon, scene, tmp_path, monkeypatch):
+    served: list[dict[str, Any]] = []
+    monkeypatch.setattr("app.serving.serve", lambda *_, **options: served.append(options))
+    assert rotrecon("serve", scene, "--dangerous", "cone", "--dangerous", "sphere", "--data", tmp_path)[0] == 0
+    assert served[0]["deciding"].dangerous == {"cone", "sphere"}
+    assert served[0]["record"].folder == tmp_path
+    code, _, err = rotrecon("serve", scene, "--dangerous", "bomb")
+    assert code == 2
+    assert "bomb is no class" in err
 
 
 def test_serve_measures_by_the_method_that_is_given(rotrecon, scene, monkeypatch):

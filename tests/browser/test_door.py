@@ -8,14 +8,17 @@ import pytest
 from playwright.sync_api import Browser, Page, expect
 
 from app.console import Console
+from app.decided import decision_of
 from app.door.door import Door
 from app.door.hidden_viser import HiddenViser
 from app.door.listening import listen
 from app.door.people import with_person, write_people
+from app.record.store import Record
 from rotrecon.settings import Settings
 from rotrecon.simulation.simulate import Simulated
-from tests.browser.conftest import VIEWPORT
+from tests.browser.conftest import SLOW_PAGE, VIEWPORT
 from tests.browser.operator import Operator
+from tests.browser.test_deciding import arm, hold
 from tests.browser.test_page import drawing_events
 
 SECRET = "ten letters or more"
@@ -26,8 +29,16 @@ def door(scene: Simulated, tmp_path: Path) -> Iterator[tuple[Door, Console]]:
     people = tmp_path / "users.json"
     write_people(people, with_person({}, "Walt", "watcher", SECRET))
     hidden = HiddenViser()
+    record = Record.open(tmp_path / "record")
     console = Console(
-        scene.frame, "A pipe", Settings(), cloud_points=500, open_viser=hidden.open, name_of=hidden.name_of
+        scene.frame,
+        "A pipe",
+        Settings(),
+        cloud_points=500,
+        open_viser=hidden.open,
+        record=record,
+        deciding=SLOW_PAGE,
+        name_of=hidden.name_of,
     )
     console.start()
     bound = listen("127.0.0.1", 0, people, None)
@@ -36,6 +47,7 @@ def door(scene: Simulated, tmp_path: Path) -> Iterator[tuple[Door, Console]]:
     yield door, console
     door.stop()
     console.stop()
+    record.close()
 
 
 def test_an_operator_comes_in_by_the_link_and_draws_and_a_watcher_logs_in_and_looks(
@@ -54,13 +66,16 @@ def test_an_operator_comes_in_by_the_link_and_draws_and_a_watcher_logs_in_and_lo
     operator.page.get_by_role("button", name="Undo").click()
     operator.send(*drawing_events(scene))
     assert operator.value("diameter_mm")
+    arm(operator)
+    hold(operator, "confirmed")
+    assert (decision_of(console.told).who or "").endswith("(local)")
     assert door_.guard.refused.total() == 0, "nothing that the page itself does is refused"
 
     watcher = Operator(browser.new_page(viewport=VIEWPORT), console, lambda page: _log_in(page, door_))
     assert door_.name_of(watcher.client_id) == "Walt"
     before = console.session
     watcher.drag((60, 30), (150, 220))
-    expect(watcher.page.get_by_text("You are watching")).to_be_visible()
+    expect(watcher.page.get_by_text("You are watching", exact=True)).to_be_visible()
     watcher.page.keyboard.press("v")
     watcher.until(lambda: watcher.view.state.view == "3D", "the watcher has the 3D view")
     now = console.session

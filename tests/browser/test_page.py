@@ -64,6 +64,7 @@ def test_zooming_looks_at_the_last_point(operator: Operator) -> None:
 
 def test_sections_are_stepped_and_excluded(operator: Operator, scene: Simulated) -> None:
     operator.send(*drawing_events(scene))
+    operator.page.get_by_role("tab", name="Sections").click()
     shown = operator.page.get_by_test_id("section")
     expect(shown).to_contain_text(" of ")
     number = int((shown.text_content() or "").split()[1])
