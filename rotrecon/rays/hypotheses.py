@@ -13,7 +13,7 @@ from rotrecon.rays.fitting import Outline, cauchy
 from rotrecon.rays.limbs import ANY_GAP_PX, mask_outline
 from rotrecon.rays.patch import Patch
 from rotrecon.rays.ray_fit import depths_of, spread
-from rotrecon.rays.starts import Ridge, ball_starts, cone_starts, cylinder_starts, ridge
+from rotrecon.rays.starts import Ridge, ball_starts, cone_starts, cylinder_starts, ridge, together
 from rotrecon.rays.surfaces import Ball, Lateral, Range, Surface, limited
 from rotrecon.sections.radii import Shape
 
@@ -73,7 +73,7 @@ class Scene:
 def scene_of(camera: PinholeCamera, patch: Patch, segments: CrossSegments, kept: Bools, depth_m: Floats) -> Scene:
     """The scene of segmented cells (S, W) of known depth (S, W)."""
     edge = ridge(camera, depth_m, segments, kept)
-    length_m = float(np.linalg.norm(np.ptp(edge.points_m, axis=0))) if len(edge.points_m) else 0.0
+    length_m = float(np.linalg.norm(np.ptp(together(edge.points_m), axis=0))) if len(edge.points_m) else 0.0
     usable = segments.inside & np.isfinite(depth_m)
     outline = mask_outline(segments, kept, usable, patch, ANY_GAP_PX)
     seen_m = np.where(kept, depth_m, np.nan)

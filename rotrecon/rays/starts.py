@@ -13,6 +13,8 @@ FEWEST_PIXELS = 3
 """A section with fewer has no middle and no width worth the name."""
 ROBUST_ROUNDS = 8
 """Reweightings of a line or a circle: each halves what outliers pull, or better."""
+STRAY = 4.0
+"""Median distances from the middle beyond which a section shows something else."""
 CONE_ANGLES_RAD = tuple(np.deg2rad([-40.0, -25.0, -10.0, 10.0, 25.0, 40.0]))
 """Half angles of cones to start from; nearer ones are found from any of them, or from the cylinder."""
 CONE_ANGLE_HELD = 0.95
@@ -105,8 +107,17 @@ def ball_starts(edge: Ridge, points_m: Floats, focal_px: float) -> list[Ball]:
     return starts
 
 
+def together(points_m: Floats) -> Floats:
+    """The points (m, 3) among (n, 3) that are not far off all others: evenly along a line, none is twice as far from
+    their middle as half of them."""
+    distance = np.linalg.norm(points_m - np.median(points_m, axis=0), axis=1)
+    return points_m[distance <= STRAY * np.median(distance)]
+
+
 def robust_line(points_m: Floats) -> tuple[Floats, Floats]:
     """Middle (3,) and unit direction (3,), in the order of the points (n, 3), of the line through most of them."""
+    # a single one far behind would draw the line to itself, whatever its weight
+    points_m = together(points_m)
     weight = np.ones(len(points_m))
     middle, offset, direction = points_m.mean(axis=0), points_m, np.array([0.0, 1.0, 0.0])
     for _ in range(ROBUST_ROUNDS):
