@@ -9,6 +9,7 @@ from app.clock import seconds
 from app.deciding.events import ClockTicked, Offered, PicturesSent, Unmeasured
 from app.digest import evidence_digest
 from app.proposing import Evidence, evidence_shown, offered
+from app.record.entries import Entry
 from app.record.store import Record
 from app.recording import write
 from app.session import Session, step
@@ -37,6 +38,8 @@ class Desk:
     def __init__(self, record: Record | None, frame: Frame, settings: Settings, post: Callable[[Posted], None]) -> None:
         self._record, self._frame, self._settings, self._post = record, frame, settings, post
         self._evidence: Evidence | None = None
+        self._measured_in: dict[str | None, Frame] = {}
+        """Frames by the digest of entries that are not yet on disk: views have another one for every area."""
         self._preparing: asyncio.Task[None] | None = None
 
     @property
@@ -64,6 +67,7 @@ class Desk:
         self._preparing = None
         if item.event is None or evidence_shown(session) != item.evidence:
             return session
+        self._measured_in[item.event.entry.digest] = item.evidence.result.frame
         return step(session, item.event)
 
     async def recorded(self, session: Session, again: bool) -> Session:
@@ -75,9 +79,11 @@ class Desk:
         if not decision.outbox or (decision.fault is not None and not again):
             return session
         for event in await asyncio.to_thread(
-            write, self._record, decision.outbox, self._frame_of(evidence), lambda: self._digest(evidence)
+            write, self._record, decision.outbox, self._frame_of, lambda: self._digest(evidence)
         ):
             session = step(session, event)
+        waiting = {entry.digest for entry in session.decision.outbox}
+        self._measured_in = {digest: frame for digest, frame in self._measured_in.items() if digest in waiting}
         if session.decision.fault not in (None, decision.fault):
             log.error("nothing can be decided: %s", session.decision.fault)
         return session
@@ -95,9 +101,8 @@ class Desk:
         self._preparing.cancel()
         return (self._preparing,)
 
-    def _frame_of(self, evidence: Evidence | None) -> Frame:
-        """That was measured in: of views the one that was matched for the area."""
-        return self._frame if evidence is None else evidence.result.frame
+    def _frame_of(self, entry: Entry) -> Frame:
+        return self._measured_in.get(entry.digest, self._frame)
 
     def _digest(self, evidence: Evidence | None) -> str | None:
         """Of the evidence as it is at this moment."""
@@ -108,7 +113,7 @@ class Desk:
     async def _prepare(self, evidence: Evidence, who: str) -> None:
         event: Offered | Unmeasured | None = None
         try:
-            event = await asyncio.to_thread(offered, evidence, who, evidence.result.frame, self._settings)
+            event = await asyncio.to_thread(offered, evidence, who, self._settings)
         except Exception:
             log.exception("the measurement cannot be proposed")
         finally:

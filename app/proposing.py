@@ -8,7 +8,6 @@ from app.deciding.states import Offer
 from app.record.evidence import proposal
 from app.session import Session
 from rotrecon.drawing import Drawing
-from rotrecon.frame import Frame
 from rotrecon.reconstruction import Reconstruction
 from rotrecon.settings import Settings
 from rotrecon.tools import ToolProposal
@@ -32,10 +31,10 @@ def evidence_shown(session: Session) -> Evidence | None:
     return Evidence(session.revision, replace(drawing, axis=None) if session.shown.proposed else drawing, result)
 
 
-def offered(evidence: Evidence, who: str, frame: Frame, settings: Settings) -> Offered | Unmeasured:
+def offered(evidence: Evidence, who: str, settings: Settings) -> Offered | Unmeasured:
     """The event that tells the decision of a measurement."""
     result = evidence.result
-    entry = proposal(who, frame, evidence.drawing, settings, result)
+    entry = proposal(who, result.frame, evidence.drawing, settings, result)
     if result.solid is None or entry.digest is None:
         return Unmeasured(seconds(), entry)
     offer = Offer(

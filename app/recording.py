@@ -15,7 +15,10 @@ FINAL = ("confirmed", "overridden")
 
 
 def write(
-    record: Record | None, outbox: tuple[Entry, ...], frame: Frame, digest: Callable[[], str | None]
+    record: Record | None,
+    outbox: tuple[Entry, ...],
+    frame_of: Callable[[Entry], Frame],
+    digest: Callable[[], str | None],
 ) -> tuple[Written | NotWritten, ...]:
     """Put entries on disk in their order, and with evidence its frame; what became of it, as events.
 
@@ -28,7 +31,7 @@ def write(
                 raise StoreError(NO_RECORD)
             if entry.kind in FINAL and entry.digest != digest():
                 raise StoreError(CHANGED)
-            record.append(entry, frame if "evidence" in entry.payload else None)
+            record.append(entry, frame_of(entry) if "evidence" in entry.payload else None)
             count += 1
     except StoreError as error:
         why = str(error)

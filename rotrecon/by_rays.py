@@ -18,7 +18,7 @@ from rotrecon.rays.patch import Patch, patch_of
 from rotrecon.rays.ray_fit import RayFit
 from rotrecon.rays.robust import Ranked, rank
 from rotrecon.rays.starts import robust_line
-from rotrecon.rays.surfaces import Ball, Lateral
+from rotrecon.rays.surfaces import Lateral
 from rotrecon.recognition import candidates_of, chosen_of, intervals_of, is_possible, solid_of
 from rotrecon.reconstruction import Cut, Reconstruction
 from rotrecon.section_radii import SectionRadii, section_radii
@@ -268,7 +268,7 @@ def _evidence(
 
 def _doubt_share(fit: RayFit) -> float:
     """Of the variance of the radius at the surface's centre, from 0 to 1."""
-    place = 3 if isinstance(fit.surface, Ball) else 4
+    place = fit.size_place
     doubt = np.broadcast_to(fit.doubt, fit.covariance.shape)[place, place]
     return float(np.clip(doubt / max(fit.covariance[place, place], np.finfo(float).tiny), 0.0, 1.0))
 

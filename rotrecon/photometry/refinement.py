@@ -92,7 +92,7 @@ def refined(one: Ranked, scene: Scene, others: tuple[Other, ...]) -> Refinement 
     half_px = climbed.surface.size_m / float(climbed.surface.center_m[2]) * scene.patch.focal_px
     drawn_px = half_width_px(scene.segments, round_=one.shape == "sphere")
     as_drawn = abs(half_px - drawn_px) < max(DRAWN_SHARE * drawn_px, DRAWN_PX)
-    sure = float(np.sqrt(fit.covariance.diagonal()[_size_of(fit)])) < UNSURE * fit.surface.size_m
+    sure = float(np.sqrt(fit.covariance.diagonal()[fit.size_place])) < UNSURE * fit.surface.size_m
     trusted = climbed.agreeing > AGREEING_SHARE and climbed.by_depth > DEPTH_SHARE and sure and as_drawn
     return replace(refinement, trusted=trusted)
 
@@ -146,11 +146,6 @@ def weighed(found: tuple[Refinement, ...]) -> tuple[Refinement, ...]:
     return tuple(best.values())
 
 
-def _size_of(fit: RayFit) -> int:
-    """Place of the radius among the parameters."""
-    return 3 if len(fit.free) == 4 else 4
-
-
 def _shape(one: Refinement) -> Shape:
     shape = one.shape.shape
     assert shape != "revolution"
@@ -174,7 +169,7 @@ def _finished(one: Ranked, fit: RayFit, climbed: Climbed, scene: Scene, *, by_de
         pixels = np.flatnonzero(known).astype(np.int32)
         sight = Sight(guard=float(np.percentile(surface.off_middle(patch.rays[:, pixels]), 95)))
     if not by_depth:
-        size = _size_of(fit)
+        size = fit.size_place
         doubt = UNTEXTURED_BALL_DOUBT if isinstance(surface, Ball) else UNTEXTURED_DOUBT
         left_m = doubt * max(1.0 - textured / FULLY_TEXTURED, 0.0) * surface.size_m
         covariance[size, size] += left_m**2 * climbed.free[size]

@@ -161,20 +161,26 @@ class Lateral:
 
     def gap(self, rays: Rays) -> tuple[Floats, Floats]:
         """How far rays pass outside it, and the depth of their nearest points, both (N,); as `tangency` has them."""
-        turned, origin, roots = self._quadratic(rays)
-        depth = roots.nearest_m
-        x, y, h = self._point(turned, origin, depth)
-        radius = self._radius_at(h)
+        (x, y, _), radius, depth = self._nearest_to(rays)
         return (x * x + y * y - radius * radius) / (2 * radius), depth
 
     def tangency(self, rays: Rays) -> Tangency:
         """How far rays pass outside it."""
-        turned, origin, roots = self._quadratic(rays)
-        depth = roots.nearest_m
-        x, y, h = self._point(turned, origin, depth)
-        radius = self._radius_at(h)
+        (x, y, h), radius, depth = self._nearest_to(rays)
         gap = (x * x + y * y - radius * radius) / (2 * radius)
         return Tangency(self._gradient(x, y, h), 1.0 / radius, gap, depth)
+
+    def off_middle(self, rays: Rays) -> Floats:
+        """How far beside the axis rays (3, N) pass, over the radius there: 1 at the outline."""
+        (x, y, _), radius, _ = self._nearest_to(rays)
+        return np.sqrt(x * x + y * y) / np.maximum(radius, 1e-9)
+
+    def _nearest_to(self, rays: Rays) -> tuple[Floats, Floats, Floats]:
+        """Points (3, N) of rays nearest to the surface in its own coordinates, its radius there, and their depth."""
+        turned, origin, roots = self._quadratic(rays)
+        depth = roots.nearest_m
+        points = self._point(turned, origin, depth)
+        return points, self._radius_at(points[2]), depth
 
     def _point(self, turned: Floats, origin: Floats, depth: Floats) -> Floats:
         """Points (3, N) of rays in the surface's own coordinates."""
@@ -201,12 +207,6 @@ class Lateral:
     def heights(self, points_m: Floats) -> Floats:
         """Heights (N,) along the axis, from the centre, of points (N, 3)."""
         return (points_m - self.center_m) @ self.direction
-
-    def off_middle(self, rays: Rays) -> Floats:
-        """How far beside the axis rays (3, N) pass, over the radius there: 1 at the outline."""
-        turned, origin, roots = self._quadratic(rays)
-        x, y, h = origin[:, None] + roots.nearest_m * turned
-        return np.sqrt(x**2 + y**2) / np.maximum(self.radius_m + self.slope * h, 1e-9)
 
     def stepped(self, step: Floats) -> "Lateral":
         """The surface after a step (k,) of its parameters."""
