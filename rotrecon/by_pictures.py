@@ -10,6 +10,7 @@ from rotrecon.primitives import Kind
 from rotrecon.rays.hypotheses import Held, Scene
 from rotrecon.rays.robust import Ranked
 from rotrecon.rays.starts import ridge
+from rotrecon.rays.surfaces import radius_seen_m
 from rotrecon.recognition import chosen_of
 from rotrecon.settings import Settings
 
@@ -49,7 +50,7 @@ def by_pictures(matched: Seen, held: Held, frame: Frame, kind: Kind | None, sett
         if best is not None:
             ranked, chosen = shapes, best
             first = next(one for one in found if one.shape is best)
-            doubts = _disagreement(by_depth, first)
+            doubts = _disagreement(by_depth, first, scene)
     if first is None:
         return replace(matched, textured=False)
     ranked = tuple(first.shape if one is chosen else one for one in ranked)
@@ -57,11 +58,12 @@ def by_pictures(matched: Seen, held: Held, frame: Frame, kind: Kind | None, sett
     return Seen(ranked, first.shape, _scene_seen(first, scene, frame), (*first.doubts, *doubts), textured)
 
 
-def _disagreement(by_depth: Refinement | None, by_drawing: Refinement) -> tuple[str, ...]:
+def _disagreement(by_depth: Refinement | None, by_drawing: Refinement, scene: Scene) -> tuple[str, ...]:
     """What speaks for another size than the one that the drawing led to."""
     if by_depth is None or by_depth is by_drawing:
         return ()
-    other_m, found_m = (one.climbed.surface.size_m for one in (by_depth, by_drawing))
+    rays = scene.patch.rays[:, by_drawing.climbed.pixels]
+    other_m, found_m = (radius_seen_m(one.climbed.surface, rays) for one in (by_depth, by_drawing))
     if abs(other_m - found_m) < APART * found_m:
         return ()
     return (

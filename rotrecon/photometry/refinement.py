@@ -19,7 +19,7 @@ from rotrecon.rays.correlation import Likeness
 from rotrecon.rays.hypotheses import Held, Scene
 from rotrecon.rays.ray_fit import RayFit, Sight, predicted
 from rotrecon.rays.robust import PARAMETERS, Ranked
-from rotrecon.rays.surfaces import Ball, Surface
+from rotrecon.rays.surfaces import Ball, Surface, radius_seen_m
 from rotrecon.sections.radii import Shape
 from rotrecon.turned.turned import Turned
 
@@ -38,6 +38,9 @@ TEXTURED = 0.3
 UNTEXTURED_DOUBT, UNTEXTURED_BALL_DOUBT, FULLY_TEXTURED = 0.015, 0.03, 0.5
 """Standard error of the radius, over the radius, that outline and shading of a plain object leave, and shading alone
 that of a ball; and the share of textured pixels at which nothing of it is left."""
+ALIKE = 5.0
+"""Half a likelihood's logarithm: in a shallow valley of brightness the end that matched depth led to is held to, for its
+outline was looked for where the object is."""
 LEAST_CORRELATION = 0.5
 """Of two pictures over a surface that is where they agree best; less is none that they show."""
 
@@ -89,7 +92,8 @@ def refined(one: Ranked, scene: Scene, others: tuple[Other, ...]) -> Refinement 
     if climbed is None or not moved_px(fit.surface, climbed.surface, scene.patch, others) < FARTHEST_PX:
         return None
     refinement = _finished(one, fit, climbed, scene, by_depth=True)
-    half_px = climbed.surface.size_m / float(climbed.surface.center_m[2]) * scene.patch.focal_px
+    rays = scene.patch.rays[:, climbed.pixels]
+    half_px = radius_seen_m(climbed.surface, rays) / float(np.median(climbed.surface.meet(rays)[0])) * scene.patch.focal_px
     drawn_px = half_width_px(scene.segments, round_=one.shape == "sphere")
     as_drawn = abs(half_px - drawn_px) < max(DRAWN_SHARE * drawn_px, DRAWN_PX)
     sure = float(np.sqrt(fit.covariance.diagonal()[fit.size_place])) < UNSURE * fit.surface.size_m
@@ -141,8 +145,10 @@ def weighed(found: tuple[Refinement, ...]) -> tuple[Refinement, ...]:
     costs = [PARAMETERS[_shape(one)] / 2 * np.log(count) - credit(lead, one.climbed.surface) for one in found]
     best: dict[Shape, Refinement] = {}
     for cost, one in sorted(zip(costs, found, strict=True), key=itemgetter(0)):
-        ranked = replace(one.shape, cost=float(cost - min(costs)))
-        best.setdefault(_shape(one), replace(one, shape=ranked))
+        relative = replace(one, shape=replace(one.shape, cost=float(cost - min(costs))))
+        rival = best.setdefault(_shape(one), relative)
+        if one.by_depth and relative.shape.cost < rival.shape.cost + ALIKE:
+            best[_shape(one)] = replace(relative, shape=replace(relative.shape, cost=rival.shape.cost))
     return tuple(best.values())
 
 

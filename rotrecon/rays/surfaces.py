@@ -302,6 +302,14 @@ class Ball:
 Surface = Lateral | Ball
 
 
+def radius_seen_m(surface: Surface, rays: Rays) -> float:
+    """The radius where some rays (3, N) meet a surface, in the median: that of a cone at its centre may be far off."""
+    if isinstance(surface, Ball) or surface.slope == 0:
+        return surface.radius_m
+    heights_m = surface.heights((rays * surface.meet(rays)[0]).T)
+    return surface.radius_m + surface.slope * float(np.median(heights_m))
+
+
 def limited(value: float, limits: Range | None) -> float:
     """The value, or the limit that it lies beyond."""
     return value if limits is None else min(max(value, limits[0]), limits[1])

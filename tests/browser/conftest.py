@@ -1,12 +1,12 @@
 """A console on a small simulated scene, and a real browser that opens its page."""
 
 from collections.abc import Iterator
-from contextlib import closing
+from contextlib import closing, contextmanager
 from pathlib import Path
 
 import numpy as np
 import pytest
-from playwright.sync_api import Browser, ViewportSize, sync_playwright
+from playwright.sync_api import Browser, Page, ViewportSize, sync_playwright
 
 from app.console import Console
 from app.deciding.settings import DecisionSettings
@@ -48,7 +48,7 @@ def console(scene: Simulated, tmp_path: Path) -> Iterator[Console]:
         console.stop()
 
 
-@pytest.fixture(scope="session")
+@pytest.fixture(scope="package")
 def browser() -> Iterator[Browser]:
     with sync_playwright() as playwright:
         browser = playwright.chromium.launch(executable_path=CHROMIUM, args=CHROMIUM_ARGS)
@@ -56,8 +56,14 @@ def browser() -> Iterator[Browser]:
         browser.close()
 
 
+@contextmanager
+def opened_page(browser: Browser) -> Iterator[Page]:
+    """An empty page of its own, closed at the end: one that is left open draws on, and slows all tests after it."""
+    with closing(browser.new_page(viewport=VIEWPORT)) as page:
+        yield page
+
+
 @pytest.fixture
 def operator(browser: Browser, console: Console) -> Iterator[Operator]:
-    page = browser.new_page(viewport=VIEWPORT)
-    yield Operator(page, console)
-    page.close()
+    with opened_page(browser) as page:
+        yield Operator(page, console)

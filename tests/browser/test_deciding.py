@@ -19,7 +19,7 @@ from app.record.store import Record
 from app.record.verify import verify
 from rotrecon.settings import Settings
 from rotrecon.simulation.simulate import Simulated
-from tests.browser.conftest import SLOW_PAGE, VIEWPORT
+from tests.browser.conftest import SLOW_PAGE, opened_page
 from tests.browser.operator import TIMEOUT_S, Operator
 from tests.browser.test_page import drawing_events
 
@@ -41,9 +41,8 @@ def _opened(scene: Simulated, browser: Browser, folder: Path, deciding: Decision
     with closing(Record.open(folder)) as record:
         console = Console(scene.frame, "A pipe", Settings(), port=0, cloud_points=10, record=record, deciding=deciding)
         console.start()
-        page = browser.new_page(viewport=VIEWPORT)
-        yield Operator(page, console)
-        page.close()
+        with opened_page(browser) as page:
+            yield Operator(page, console)
         console.stop()
 
 
@@ -88,8 +87,11 @@ def kinds(folder: Path) -> list[str]:
     return found[len(found) - 1 - found[::-1].index("proposal") :]
 
 
-def another(operator: Operator, browser: Browser) -> Operator:
-    return Operator(browser.new_page(viewport=VIEWPORT), operator.console)
+@pytest.fixture
+def watcher(proposed: Operator, browser: Browser) -> Iterator[Operator]:
+    """A second page on the same console."""
+    with opened_page(browser) as page:
+        yield Operator(page, proposed.console)
 
 
 def test_arming_and_holding_confirm_in_the_record_and_to_the_robot(proposed: Operator, folder: Path) -> None:
@@ -205,8 +207,7 @@ def test_a_dangerous_class_is_named_before_anything_of_it_is_shown(careful: Oper
     expect(button(careful, "1. Arm")).to_be_disabled()
 
 
-def test_a_watcher_does_nothing_asks_and_is_handed_control(proposed: Operator, browser: Browser) -> None:
-    watcher = another(proposed, browser)
+def test_a_watcher_does_nothing_asks_and_is_handed_control(proposed: Operator, watcher: Operator) -> None:
     arm(proposed)
     state(watcher, "armed")
     expect(watcher.page.get_by_test_id("control")).to_contain_text("operator is in control")

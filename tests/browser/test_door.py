@@ -16,7 +16,7 @@ from app.door.people import with_person, write_people
 from app.record.store import Record
 from rotrecon.settings import Settings
 from rotrecon.simulation.simulate import Simulated
-from tests.browser.conftest import SLOW_PAGE, VIEWPORT
+from tests.browser.conftest import SLOW_PAGE, opened_page
 from tests.browser.operator import Operator
 from tests.browser.test_deciding import arm, hold
 from tests.browser.test_page import drawing_events
@@ -50,12 +50,18 @@ def door(scene: Simulated, tmp_path: Path) -> Iterator[tuple[Door, Console]]:
     record.close()
 
 
+@pytest.fixture
+def pages(browser: Browser) -> Iterator[tuple[Page, Page]]:
+    with opened_page(browser) as first, opened_page(browser) as second:
+        yield first, second
+
+
 def test_an_operator_comes_in_by_the_link_and_draws_and_a_watcher_logs_in_and_looks(
-    door: tuple[Door, Console], browser: Browser, scene: Simulated
+    door: tuple[Door, Console], pages: tuple[Page, Page], scene: Simulated
 ) -> None:
     door_, console = door
     said: list[str] = []
-    page = browser.new_page(viewport=VIEWPORT)
+    page, second = pages
     page.on("console", lambda message: said.append(message.text))
     operator = Operator(page, console, lambda page: page.goto(door_.link or ""))
     assert page.url == f"{door_.address}/"
@@ -71,7 +77,7 @@ def test_an_operator_comes_in_by_the_link_and_draws_and_a_watcher_logs_in_and_lo
     hold(operator, "confirmed")
     assert (decision_of(console.told).who or "").endswith("(local)")
 
-    watcher = Operator(browser.new_page(viewport=VIEWPORT), console, lambda page: _log_in(page, door_))
+    watcher = Operator(second, console, lambda page: _log_in(page, door_))
     assert door_.name_of(watcher.client_id) == "Walt"
     before = console.session
     watcher.drag((60, 30), (150, 220))

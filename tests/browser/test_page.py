@@ -12,7 +12,7 @@ from app.serving import serve
 from rotrecon.overlay import section_pixels
 from rotrecon.settings import Settings
 from rotrecon.simulation.simulate import Simulated
-from tests.browser.conftest import VIEWPORT
+from tests.browser.conftest import opened_page
 from tests.browser.operator import Operator
 
 
@@ -116,16 +116,15 @@ def test_a_click_on_the_object_lights_the_section_there(operator: Operator, scen
 
 
 def test_two_pages_share_the_drawing_and_not_the_view(operator: Operator, browser: Browser, scene: Simulated) -> None:
-    page = browser.new_page(viewport=VIEWPORT)
-    other = Operator(page, operator.console)
-    operator.send(*drawing_events(scene))
-    expect(other.page.locator('[data-field="diameter_mm"]')).to_have_attribute(
-        "data-value", operator.value("diameter_mm") or ""
-    )
-    other.page.keyboard.press("v")
-    other.until(lambda: other.view.state.view == "3D", "the other page shows the 3D view")
-    assert operator.view.state.view == "camera"
-    page.close()
+    with opened_page(browser) as page:
+        other = Operator(page, operator.console)
+        operator.send(*drawing_events(scene))
+        expect(other.page.locator('[data-field="diameter_mm"]')).to_have_attribute(
+            "data-value", operator.value("diameter_mm") or ""
+        )
+        other.page.keyboard.press("v")
+        other.until(lambda: other.view.state.view == "3D", "the other page shows the 3D view")
+        assert operator.view.state.view == "camera"
     operator.until(lambda: other.client_id not in operator.console.pages, "the closed page is forgotten")
 
 

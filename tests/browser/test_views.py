@@ -11,7 +11,7 @@ from app.record.store import Record
 from rotrecon.capture import Capture
 from rotrecon.frame import Frame
 from rotrecon.settings import Settings
-from tests.browser.conftest import SLOW_PAGE, VIEWPORT
+from tests.browser.conftest import SLOW_PAGE, opened_page
 from tests.browser.operator import Operator
 from tests.views import Rig, simulated
 
@@ -33,23 +33,22 @@ def test_what_is_drawn_on_views_is_measured_on_depth_matched_for_it(browser: Bro
             capture=capture,
         )
         console.start()
-        page = browser.new_page(viewport=VIEWPORT)
         try:
-            operator = Operator(page, console)
-            corners = scene.drawing.area.vertices_px
-            low, high = (tuple(pick(axis) for axis in zip(*corners, strict=True)) for pick in (min, max))
-            operator.drag(low, high)
-            operator.settle()
-            measured = console.session.measured
-            assert measured is not None
-            assert not measured.coarse
-            result = console.session.reconstruction
-            assert result is not None
-            assert result.frame is not coarse
-            assert result.frame.views
-            assert result.solid is not None
-            assert radius_at(result.solid, result.solid.center_m) == pytest.approx(scene.solid.radius_m, rel=0.01)
-            expect(page.get_by_test_id("hint")).to_contain_text("Measured.")
+            with opened_page(browser) as page:
+                operator = Operator(page, console)
+                corners = scene.drawing.area.vertices_px
+                low, high = (tuple(pick(axis) for axis in zip(*corners, strict=True)) for pick in (min, max))
+                operator.drag(low, high)
+                operator.settle()
+                measured = console.session.measured
+                assert measured is not None
+                assert not measured.coarse
+                result = console.session.reconstruction
+                assert result is not None
+                assert result.frame is not coarse
+                assert result.frame.views
+                assert result.solid is not None
+                assert radius_at(result.solid, result.solid.center_m) == pytest.approx(scene.solid.radius_m, rel=0.01)
+                expect(page.get_by_test_id("hint")).to_contain_text("Measured.")
         finally:
-            page.close()
             console.stop()
