@@ -268,7 +268,7 @@ def _evidence(
 
 def _doubt_share(fit: RayFit) -> float:
     """Of the variance of the radius at the surface's centre, from 0 to 1."""
-    place = fit.size_place
+    place = fit.surface.size_place
     doubt = np.broadcast_to(fit.doubt, fit.covariance.shape)[place, place]
     return float(np.clip(doubt / max(fit.covariance[place, place], np.finfo(float).tiny), 0.0, 1.0))
 

@@ -45,7 +45,8 @@ JUDGED = """
 """.split()
 BY_RAYS = [*FITTED, *TURNED, *PHOTOMETRY, *JUDGED]
 SHOWN = """
-    clearance envelope grasp next_view answer curves overlay mesh line_stages residuals grasp_overlay distance
+    clearance envelope grasp predicted_interval next_view answer curves overlay mesh line_stages residuals
+    grasp_overlay distance
 """.split()
 ORDER = [*GIVEN, *MATCHED, *PROPOSED_AXIS, *SEGMENTED, *BY_SECTIONS, *BY_RAYS, "reconstruct", *SHOWN]
 """The flow of data; a stage may import only what stands before it."""

@@ -8,8 +8,9 @@ import pytest
 
 from rotrecon.camera import inverse
 from rotrecon.frame import Frame, StereoNoise
-from rotrecon.next_view import NEARNESSES, moved_round, next_view, predicted_half_width
+from rotrecon.next_view import NEARNESSES, moved_round, next_view
 from rotrecon.outcome import Fit
+from rotrecon.predicted_interval import predicted_half_width
 from rotrecon.reconstruct import reconstruct
 from rotrecon.reconstruction import Reconstruction
 from rotrecon.settings import Settings

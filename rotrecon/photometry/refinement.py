@@ -101,7 +101,7 @@ def refined(one: Ranked, scene: Scene, others: tuple[Other, ...]) -> Refinement 
     )
     drawn_px = half_width_px(scene.segments, round_=one.shape == "sphere")
     as_drawn = abs(half_px - drawn_px) < max(DRAWN_SHARE * drawn_px, DRAWN_PX)
-    sure = float(np.sqrt(fit.covariance.diagonal()[fit.size_place])) < UNSURE * fit.surface.size_m
+    sure = float(np.sqrt(fit.covariance.diagonal()[fit.surface.size_place])) < UNSURE * fit.surface.size_m
     trusted = climbed.agreeing > AGREEING_SHARE and climbed.by_depth > DEPTH_SHARE and sure and as_drawn
     return replace(refinement, trusted=trusted)
 
@@ -179,7 +179,7 @@ def _finished(one: Ranked, fit: RayFit, climbed: Climbed, scene: Scene, *, by_de
     if known.sum() > max(SHARP_SHARE * len(pixels), FEWEST_PIXELS):
         pixels = np.flatnonzero(known).astype(np.int32)
         sight = Sight(guard=float(np.percentile(surface.off_middle(patch.rays[:, pixels]), 95)))
-    size = fit.size_place
+    size = fit.surface.size_place
     doubt = UNTEXTURED_BALL_DOUBT if isinstance(surface, Ball) else UNTEXTURED_DOUBT
     left_m = doubt * max(1.0 - textured / TEXTURE_HOLDS, 0.0) * surface.size_m
     covariance[size, size] += left_m**2 * climbed.free[size]

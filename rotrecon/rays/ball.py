@@ -25,6 +25,11 @@ class Ball:
         freeze(self)
 
     @property
+    def size_place(self) -> int:
+        """Which of the parameters the radius is."""
+        return 3
+
+    @property
     def size_m(self) -> float:
         """The radius."""
         return self.radius_m

@@ -99,7 +99,7 @@ def _explains(fit: RayFit, inner: RayFit, patch: Patch) -> bool:
 
 def _as_large(fit: RayFit, inner: RayFit) -> bool:
     """Whether a fit to more depths has the size of the inner one, as nearly as where limbs are seen to mislead."""
-    variance = np.maximum(np.diag(inner.covariance) - np.diag(fit.covariance), 0.0)[fit.size_place]
+    variance = np.maximum(np.diag(inner.covariance) - np.diag(fit.covariance), 0.0)[fit.surface.size_place]
     apart = abs(fit.surface.size_m - inner.surface.size_m)
     return bool(apart <= SUSPICION * np.sqrt(variance) + 1e-6)
 
@@ -107,7 +107,7 @@ def _as_large(fit: RayFit, inner: RayFit) -> bool:
 def doubting(fit: RayFit, other: RayFit) -> RayFit:
     """A fit that is less sure of its size by a share of its difference from another, which believes other things."""
     apart = np.zeros(len(fit.free))
-    apart[fit.size_place :] = CORRECTION_DOUBT * (_size(fit.surface) - _size(other.surface))
+    apart[fit.surface.size_place :] = CORRECTION_DOUBT * (_size(fit.surface) - _size(other.surface))
     return replace(fit, doubt=fit.doubt + np.outer(apart, apart))
 
 

@@ -37,6 +37,11 @@ class Lateral:
         return self.turn[2]
 
     @property
+    def size_place(self) -> int:
+        """Which of the parameters the radius is."""
+        return 4
+
+    @property
     def size_m(self) -> float:
         """The radius at the middle."""
         return self.radius_m

@@ -86,11 +86,6 @@ class RayFit:
         return covariance
 
     @property
-    def size_place(self) -> int:
-        """Place of the radius among the parameters."""
-        return 3 if len(self.free) == 4 else 4
-
-    @property
     def independent(self) -> float:
         """How many of the depths err independently."""
         return len(self.pixels) * self.likeness.independent_share

@@ -39,6 +39,11 @@ class Turned(Lateral):
     high_m: float
 
     @property
+    def size_place(self) -> int:
+        """Which of the parameters is the first that says how thick it is."""
+        return 4
+
+    @property
     def size_m(self) -> float:
         """The radius in the middle of the curve."""
         return float(self.curve(np.array([(self.low_m + self.high_m) / 2]))[0][0])
