@@ -179,7 +179,7 @@ def _finished(one: Ranked, fit: RayFit, climbed: Climbed, scene: Scene, *, by_de
     if known.sum() > max(SHARP_SHARE * len(pixels), FEWEST_PIXELS):
         pixels = np.flatnonzero(known).astype(np.int32)
         sight = Sight(guard=float(np.percentile(surface.off_middle(patch.rays[:, pixels]), 95)))
-    size = fit.surface.size_place
+    size = surface.size_place
     doubt = UNTEXTURED_BALL_DOUBT if isinstance(surface, Ball) else UNTEXTURED_DOUBT
     left_m = doubt * max(1.0 - textured / TEXTURE_HOLDS, 0.0) * surface.size_m
     covariance[size, size] += left_m**2 * climbed.free[size]
