@@ -8,6 +8,7 @@ from contextlib import contextmanager, redirect_stdout
 
 from viser import CameraHandle, ClientHandle, ViserServer
 
+from app.adjustable import Chosen
 from app.clock import seconds, wall_s
 from app.console_items import CameraMoved, FromPage, Item, PageClosed, PageOpened, Stopped
 from app.deciding.events import (
@@ -24,7 +25,8 @@ from app.deciding.states import Deciding
 from app.decision_text import face
 from app.desk import Desk, Proposable
 from app.events import Event, Reconstructed
-from app.measuring import measure, measure_finely
+from app.last_session import SessionFile
+from app.measurements import Measurements
 from app.newer_frames import facts_of, newer_facts
 from app.page import PageEvent
 from app.page_view import BRAND_COLOR, PageView
@@ -34,7 +36,6 @@ from app.record.store import Record
 from app.scene_view import SceneView
 from app.session import Done, Session, step
 from rotrecon.capture import Capture
-from rotrecon.drawing import Drawing
 from rotrecon.frame import Frame
 from rotrecon.settings import Settings
 
@@ -42,8 +43,6 @@ CLOUD_POINTS = 40_000
 """Points of the cloud that are sent to a page: half a megabyte."""
 SOMEBODY = "operator"
 """Who is at a page when nobody had to log in."""
-MOST_MEASUREMENTS = 2
-"""Under way at once: the newest drawing need not wait for an older one, and a drag does not pile them up."""
 log = logging.getLogger(__name__)
 
 
@@ -69,26 +68,34 @@ class Console:
         deciding: DecisionSettings | None = None,
         name_of: Callable[[int], str | None] = lambda client_id: SOMEBODY,
         capture: Capture | None = None,
+        last: SessionFile | None = None,
     ) -> None:
         """Without a `record` nothing can be decided; `name_of` says who is behind one of viser's clients.
 
-        A `capture` of views, of which the frame is the coarse one, is matched again in every area that is drawn.
-
-        `open_viser` starts the server that its pages are on; without, one listens on `host` and `port` itself.
+        `open_viser` starts the server that its pages are on; without, one listens on `host` and `port` itself. What was
+        drawn and set in the `last` session on this frame is there again.
         """
-        decision = Deciding(deciding or DecisionSettings())
-        self.session = Session((frame.camera.width, frame.camera.height), decision=decision)
+        chosen = Chosen(settings, deciding or DecisionSettings())
+        self.session = Session(
+            (frame.camera.width, frame.camera.height),
+            decision=Deciding(chosen.deciding),
+            settings=settings,
+            defaults=chosen,
+        )
+        self._last = last
+        if last is not None:
+            self.session = last.resumed(self.session)
+            notes += () if last.problem is None else (last.problem,)
         self.told = self.session
         """What pages and robots are told, all of it on disk; read it from any thread."""
         self._name_of = name_of
-        self._desk = Desk(record, frame, settings, self.post)
-        self.frame, self.name, self._settings, self._notes = frame, name, settings, notes
+        self._desk = Desk(record, frame, self.post)
+        self._measurements = Measurements(frame, capture, self.post)
+        self.frame, self.name, self.notes = frame, name, notes
         self._host, self._port, self._cloud_points = host, port, cloud_points
-        self._capture = capture if capture is not None and capture.views else None
         self.pages: dict[int, PageView] = {}
         self._open_viser = open_viser or self._open_server
         self._opened: dict[int, ClientHandle] = {}
-        self._measuring: dict[int, asyncio.Task[None]] = {}
         self._listeners: dict[object, Callable[[], object]] = {}
 
     @property
@@ -108,7 +115,7 @@ class Console:
         self.server.gui.configure_theme(
             dark_mode=True, show_logo=False, show_share_button=False, brand_color=BRAND_COLOR
         )
-        self.panels = Panels(self.server, self.name, self._notes, self._post_from)
+        self.panels = Panels(self.server, self.name, self.notes, self._post_from)
         self._scene = SceneView(
             self.server, self.frame, self._pictures.television(None, "picture"), self._cloud_points, self._post_from
         )
@@ -166,16 +173,15 @@ class Console:
             for item in items:
                 with _logged("what happened was not taken in"):
                     self._take(item)
-            self._measure_latest()
+            self._measurements.start(self.session)
             self._desk.prepare(self.session)
             only_time = all(isinstance(item, ClockTicked) for item in items)
             with _logged("what happened was not recorded"):
                 await self._tell(not only_time, any(isinstance(item, ClockTicked) for item in items))
-            if self._queue.empty() and not self._measuring and not self._desk.busy:
+            if self._queue.empty() and not self._measurements.busy and not self._desk.busy:
                 self._settled.set()
-        tasks = (ticking, *self._measuring.values(), *self._desk.stop())
-        for task in tasks:
-            task.cancel()
+        ticking.cancel()
+        tasks = (ticking, *self._measurements.stop(), *self._desk.stop())
         await asyncio.gather(*tasks, return_exceptions=True)
 
     async def _tell(self, happened: bool, ticked: bool) -> None:
@@ -202,7 +208,7 @@ class Console:
                 elif client_id in self.pages:
                     self.pages[client_id].take(event, self.session.visible)
             case Reconstructed(revision):
-                del self._measuring[revision]
+                self._measurements.done(revision)
                 self.session = step(self.session, item)
             case Proposable():
                 self.session = self._desk.taken(self.session, item)
@@ -219,26 +225,11 @@ class Console:
             case CameraMoved() | Stopped():
                 pass
 
-    def _measure_latest(self) -> None:
-        """Start measuring the drawing as it is now, unless that is done, under way, or has to wait for its turn."""
-        session, drawing = self.session, self.session.shown.complete
-        if drawing is None or session.up_to_date or session.revision in self._measuring:
-            return
-        if len(self._measuring) < MOST_MEASUREMENTS:
-            finely = self._capture if session.measured_once else None
-            task = asyncio.create_task(self._measure(session.revision, drawing, finely))
-            self._measuring[session.revision] = task
-
-    async def _measure(self, revision: int, drawing: Drawing, finely: Capture | None) -> None:
-        if finely is not None:
-            outcome = await asyncio.to_thread(measure_finely, finely, drawing, self._settings)
-        else:
-            outcome = await asyncio.to_thread(measure, self.frame, drawing, self._settings)
-        self.post(Reconstructed(revision, outcome, coarse=finely is None and self._capture is not None))
-
     def _show(self) -> None:
         """Show the session on every page; runs in a thread, and only one at a time."""
         session = self.told.visible
+        if self._last is not None:
+            self._last.keep(self.told)
         with _logged("the panels cannot be shown"):
             self.panels.show(session)
         with _logged("the scene cannot be shown"):

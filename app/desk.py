@@ -35,8 +35,8 @@ Posted = Proposable | ClockTicked | PicturesSent
 class Desk:
     """Everything but `write` runs in the console's event loop."""
 
-    def __init__(self, record: Record | None, frame: Frame, settings: Settings, post: Callable[[Posted], None]) -> None:
-        self._record, self._frame, self._settings, self._post = record, frame, settings, post
+    def __init__(self, record: Record | None, frame: Frame, post: Callable[[Posted], None]) -> None:
+        self._record, self._frame, self._post = record, frame, post
         self._evidence: Evidence | None = None
         self._measured_in: dict[str | None, Frame] = {}
         """Frames by the digest of entries that are not yet on disk: views have another one for every area."""
@@ -75,11 +75,11 @@ class Desk:
 
         After a failure it is tried `again` only when that is asked for.
         """
-        decision, evidence = session.decision, self._evidence
+        decision, evidence, settings = session.decision, self._evidence, session.settings
         if not decision.outbox or (decision.fault is not None and not again):
             return session
         for event in await asyncio.to_thread(
-            write, self._record, decision.outbox, self._frame_of, lambda: self._digest(evidence)
+            write, self._record, decision.outbox, self._frame_of, lambda: _digest(evidence, settings)
         ):
             session = step(session, event)
         waiting = {entry.digest for entry in session.decision.outbox}
@@ -104,17 +104,18 @@ class Desk:
     def _frame_of(self, entry: Entry) -> Frame:
         return self._measured_in.get(entry.digest, self._frame)
 
-    def _digest(self, evidence: Evidence | None) -> str | None:
-        """Of the evidence as it is at this moment."""
-        if evidence is None:
-            return None
-        return evidence_digest(evidence.result.frame, evidence.drawing, self._settings, evidence.result)
-
     async def _prepare(self, evidence: Evidence, who: str) -> None:
         event: Offered | Unmeasured | None = None
         try:
-            event = await asyncio.to_thread(offered, evidence, who, self._settings)
+            event = await asyncio.to_thread(offered, evidence, who)
         except Exception:
             log.exception("the measurement cannot be proposed")
         finally:
             self._post(Proposable(evidence, event))
+
+
+def _digest(evidence: Evidence | None, settings: Settings) -> str | None:
+    """Of the evidence as it is at this moment."""
+    if evidence is None:
+        return None
+    return evidence_digest(evidence.result.frame, evidence.drawing, settings, evidence.result)

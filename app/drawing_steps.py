@@ -8,7 +8,7 @@ from app.events import (
     ContactPlaced,
     DiameterTyped,
     DirectionChosen,
-    Event,
+    DrawingEvent,
     HandleMoved,
     KindChosen,
     PageLeft,
@@ -42,7 +42,7 @@ HISTORY_LENGTH = 200
 """Steps that can be undone: more than a person remembers, few enough to keep."""
 
 
-def drawn_on(session: Session, event: Event) -> Session:
+def drawn_on(session: Session, event: DrawingEvent) -> Session:
     """The session after an event; one that makes no sense leaves it as it is."""
     match event:
         case PointerDragged() | HandleMoved() if session.drag == "cancelled":

@@ -15,11 +15,12 @@ from rotrecon.tools import ToolProposal
 
 @dataclass(frozen=True)
 class Evidence:
-    """What a proposal is about, beside the frame and the settings."""
+    """What a proposal is about, beside the frame."""
 
     revision: int
     drawing: Drawing
     """The operator's, which has no axis where that was proposed."""
+    settings: Settings
     result: Reconstruction
 
 
@@ -28,12 +29,13 @@ def evidence_shown(session: Session) -> Evidence | None:
     drawing, result = session.shown.complete, session.reconstruction
     if drawing is None or result is None or session.preview is not None or not session.up_to_date:
         return None
-    return Evidence(session.revision, replace(drawing, axis=None) if session.shown.proposed else drawing, result)
+    drawing = replace(drawing, axis=None) if session.shown.proposed else drawing
+    return Evidence(session.revision, drawing, session.settings, result)
 
 
-def offered(evidence: Evidence, who: str, settings: Settings) -> Offered | Unmeasured:
+def offered(evidence: Evidence, who: str) -> Offered | Unmeasured:
     """The event that tells the decision of a measurement."""
-    result = evidence.result
+    result, settings = evidence.result, evidence.settings
     entry = proposal(who, result.frame, evidence.drawing, settings, result)
     if result.solid is None or entry.digest is None:
         return Unmeasured(seconds(), entry)

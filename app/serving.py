@@ -9,6 +9,7 @@ from app.deciding.settings import DecisionSettings
 from app.door.door import Door
 from app.door.hidden_viser import HiddenViser
 from app.door.listening import Certificate, listen
+from app.last_session import SessionFile
 from app.record.store import Record
 from app.robot.api import robot_routes
 from app.robot.cell import ConsoleCell
@@ -50,12 +51,13 @@ def serve(
         deciding=deciding,
         name_of=hidden.name_of,
         capture=capture,
+        last=None if record is None else SessionFile(record.folder, frame),
     )
     console.start()
     door = Door(hidden, people, socket, host, certificate, camera_commands=console.panels.camera_commands)
     try:
         door.start(robot_routes(ConsoleCell(console), door.gate, door.guard))
-        for line in (*notes, *announcements(door)):
+        for line in (*console.notes, *announcements(door)):
             announce(line)
         ThreadEvent().wait()
     except KeyboardInterrupt:

@@ -7,13 +7,14 @@ from app.deciding.events import DecisionEvent, Voided
 from app.deciding.noting import refused
 from app.deciding.step import decide
 from app.drawing_steps import drawn_on
-from app.events import Event, PageLeft, Refused
+from app.events import DrawingEvent, Event, PageLeft, Refused, SettingTyped, UnitChosen
 from app.object_drawing import with_axis
 from app.session_state import Measured as Measured
 from app.session_state import Notice as Notice
 from app.session_state import Session as Session
 from app.session_state import sentence as sentence
 from app.session_state import with_selected
+from app.setting_steps import set_to
 from rotrecon.outcome import FitFailure
 from rotrecon.reconstruction import Reconstruction
 
@@ -35,10 +36,12 @@ def step(session: Session, event: Event | DecisionEvent | Done) -> Session:
         event = event.event
     if isinstance(event, DecisionEvent):
         return _decided(session, event)
+    if isinstance(event, SettingTyped | UnitChosen):
+        return _bound(session, set_to(session, event))
     return _bound(session, _drawn(session, event))
 
 
-def _drawn(session: Session, event: Event) -> Session:
+def _drawn(session: Session, event: DrawingEvent) -> Session:
     after = drawn_on(session, event)
     if after.shown != session.shown:
         after = replace(after, revision=session.revision + 1, notice=None)
@@ -62,8 +65,8 @@ def _bound(before: Session, after: Session) -> Session:
     case = after.decision.case
     if case is None or (after.revision == case.offer.revision and after.measured is before.measured):
         return after
-    voided = decide(after.decision, Voided(after.decision.now, "the drawing was changed"))
-    return replace(after, decision=voided)
+    what = "the drawing was changed" if after.settings is before.settings else "a setting was changed"
+    return replace(after, decision=decide(after.decision, Voided(after.decision.now, what)))
 
 
 def _axis_adopted(session: Session) -> Session:

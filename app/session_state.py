@@ -3,10 +3,13 @@
 from dataclasses import dataclass, field, replace
 from typing import Literal
 
+from app.adjustable import Chosen
 from app.deciding.states import Deciding
 from app.events import Refused
 from app.object_drawing import ObjectDrawing, Part, Pixel
+from app.units import Unit
 from rotrecon.reconstruction import Reconstruction
+from rotrecon.settings import Settings
 
 Objects = tuple[ObjectDrawing, ...]
 VEIL = "a class is marked dangerous: say in the Decision panel what the object is, and the measurement is shown"
@@ -57,6 +60,17 @@ class Session:
     """The failure to measure what is shown, or to close the polygon; gone as soon as that changes."""
     decision: Deciding = field(default_factory=Deciding)
     """What is proposed, who may decide on it, and how far that has got."""
+    settings: Settings = field(default_factory=Settings)
+    """What everything is measured with."""
+    defaults: Chosen = field(default_factory=Chosen)
+    """The settings that the program was started with."""
+    unit: Unit = "mm"
+    """That lengths are shown in."""
+
+    @property
+    def chosen(self) -> Chosen:
+        """The settings in force."""
+        return Chosen(self.settings, self.decision.settings)
 
     @property
     def shown(self) -> ObjectDrawing:

@@ -2,7 +2,8 @@
 
 from dataclasses import replace
 
-from app.deciding.states import Case, Deciding, Proposed, Said
+from app.deciding.settings import DecisionSettings
+from app.deciding.states import Case, Deciding, Proposed, Rejected, Said
 from app.record.entries import Entry, EntryKind
 
 PROGRAM = "rotrecon"
@@ -53,3 +54,11 @@ def proposed_again(deciding: Deciding, case: Case) -> Deciding:
     """The decision with the same evidence proposed under a new number, as if nothing had been done with it."""
     count = deciding.count + 1
     return replace(deciding, case=Case(count, case.offer, named=case.named), count=count)
+
+
+def resettled(deciding: Deciding, settings: DecisionSettings) -> Deciding:
+    """The decision under other settings: what was armed or confirmed under the earlier ones is so no more."""
+    case = deciding.case
+    if case is not None and not isinstance(case.stage, Proposed | Rejected):
+        deciding = proposed_again(noted(deciding, "voided", PROGRAM, reason="a setting was changed"), case)
+    return replace(deciding, settings=settings)

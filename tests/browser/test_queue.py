@@ -8,7 +8,7 @@ from time import monotonic, sleep
 
 import pytest
 
-import app.console
+import app.measurements
 from app.bench.wire import WirePage
 from app.clock import seconds
 from app.console import Console
@@ -51,7 +51,7 @@ class SlowMeasure:
 @pytest.fixture
 def slow(monkeypatch: pytest.MonkeyPatch) -> Iterator[SlowMeasure]:
     slow = SlowMeasure()
-    monkeypatch.setattr(app.console, "measure", slow)
+    monkeypatch.setattr(app.measurements, "measure", slow)
     yield slow
     slow.end()
 
@@ -136,7 +136,7 @@ def test_the_programs_own_mistake_is_told_and_not_the_end(
         raise ZeroDivisionError
 
     monkeypatch.setattr("app.measuring.reconstruct", broken)
-    monkeypatch.setattr(app.console, "measure", measure)
+    monkeypatch.setattr(app.measurements, "measure", measure)
     post(console, *DRAWN)
     console.wait_until_idle(WAIT_S)
     assert console.session.notice is not None

@@ -1,0 +1,57 @@
+"""Measurements under way: the newest drawing's first, in threads, and few at once."""
+
+import asyncio
+from collections.abc import Callable
+
+from app.events import Reconstructed
+from app.measuring import measure, measure_finely
+from app.session import Session
+from rotrecon.capture import Capture
+from rotrecon.drawing import Drawing
+from rotrecon.frame import Frame
+from rotrecon.settings import Settings
+
+MOST_MEASUREMENTS = 2
+"""Under way at once: the newest drawing need not wait for an older one, and a drag does not pile them up."""
+
+
+class Measurements:
+    """Runs in the console's event loop; what comes of a measurement is posted there."""
+
+    def __init__(self, frame: Frame, capture: Capture | None, post: Callable[[Reconstructed], None]) -> None:
+        """A `capture` of views, of which the frame is the coarse one, is matched again in every area that is drawn."""
+        self._frame, self._post = frame, post
+        self._capture = capture if capture is not None and capture.views else None
+        self._running: dict[int, asyncio.Task[None]] = {}
+
+    @property
+    def busy(self) -> bool:
+        """Whether anything is being measured."""
+        return bool(self._running)
+
+    def start(self, session: Session) -> None:
+        """Measure the drawing as it is now, unless that is done, under way, or has to wait for its turn."""
+        drawing = session.shown.complete
+        if drawing is None or session.up_to_date or session.revision in self._running:
+            return
+        if len(self._running) < MOST_MEASUREMENTS:
+            finely = self._capture if session.measured_once else None
+            measuring = self._measure(session.revision, drawing, session.settings, finely)
+            self._running[session.revision] = asyncio.create_task(measuring)
+
+    def done(self, revision: int) -> None:
+        """That of a revision has come back."""
+        del self._running[revision]
+
+    def stop(self) -> tuple[asyncio.Task[None], ...]:
+        """Give up what is under way; the tasks to wait for."""
+        for task in self._running.values():
+            task.cancel()
+        return tuple(self._running.values())
+
+    async def _measure(self, revision: int, drawing: Drawing, settings: Settings, finely: Capture | None) -> None:
+        if finely is not None:
+            outcome = await asyncio.to_thread(measure_finely, finely, drawing, settings)
+        else:
+            outcome = await asyncio.to_thread(measure, self._frame, drawing, settings)
+        self._post(Reconstructed(revision, outcome, coarse=finely is None and self._capture is not None))
