@@ -11,7 +11,9 @@ from app.inspection import line_in, residuals_in
 from app.inspection_text import candidates_html, distance_html, residuals_html
 from app.page import OVERLAYS, MeasuringChosen, OverlayChosen, PageEvent, PageState, StepChosen
 from app.pictures import Pictures
+from app.showing import set_to
 from app.stage_chart import STAGE_AXES, STAGE_BANDS, STAGE_SERIES, stage_chart, stage_scales, stage_text
+from app.units import MM_PER, Unit, in_unit, labels_in, scales_in
 from rotrecon.reconstruction import Reconstruction
 
 CHART_HEIGHT_PX = 150
@@ -51,24 +53,28 @@ class InspectionPanel:
         overlay.on_update(self._choosing(OverlayChosen))
         measuring.on_update(self._choosing(lambda value: MeasuringChosen(bool(value))))
 
-    def show(self, result: Reconstruction | None, page: PageState, section: int) -> None:
+    def show(self, result: Reconstruction | None, page: PageState, section: int, unit: Unit) -> None:
         """Bring it up to date."""
-        if self._stage_of != (result, section, page.step):
-            self._stage_of = (result, section, page.step)
-            self._show_stage(result, section, page.step)
-        if self._rest_of != (result, page.overlay, page.measuring, page.ends_px):
-            self._rest_of = (result, page.overlay, page.measuring, page.ends_px)
+        if self._stage_of != (result, section, page.step, unit):
+            self._stage_of = (result, section, page.step, unit)
+            self._show_stage(result, section, page.step, unit)
+        if self._rest_of != (result, page.overlay, page.measuring, page.ends_px, unit):
+            self._rest_of = (result, page.overlay, page.measuring, page.ends_px, unit)
             residuals = residuals_in(result) if result is not None and page.overlay == "residuals" else None
-            self._scale.content = residuals_html(residuals)
-            self._candidates.content = candidates_html(result)
-            self._distance.content = distance_html(self._pictures.frame, page.measuring, page.ends_px)
+            self._scale.content = in_unit(residuals_html(residuals), unit)
+            self._candidates.content = in_unit(candidates_html(result), unit)
+            distance = distance_html(self._pictures.frame, page.measuring, page.ends_px)
+            self._distance.content = in_unit(distance, unit)
 
-    def _show_stage(self, result: Reconstruction | None, section: int, step: int) -> None:
+    def _show_stage(self, result: Reconstruction | None, section: int, step: int, unit: Unit) -> None:
         line = None if result is None else line_in(result, section)
-        self._text.content = f'<div class="rr-caption" data-testid="step">{escape(stage_text(line, step))}</div>'
+        text = in_unit(escape(stage_text(line, step)), unit)
+        self._text.content = f'<div class="rr-caption" data-testid="step">{text}</div>'
         self._chart.visible = line is not None
-        self._chart.data = stage_chart(line, step)
-        scales = stage_scales(line)
+        place, *depths = stage_chart(line, step)
+        self._chart.data = (place, *(depth / MM_PER[unit] for depth in depths))
+        set_to(self._chart, "axes", labels_in(STAGE_AXES, unit))
+        scales = scales_in(stage_scales(line), ("y",), unit)
         if scales != self._chart.scales:
             self._chart.scales = scales
         if line is not None and self._step.max != len(line.stages):

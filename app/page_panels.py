@@ -21,6 +21,9 @@ from app.page import LAYERS, DarkChosen, LayerChosen, OpacityChosen, PageEvent, 
 from app.panels import Panels
 from app.pictures import Pictures
 from app.section_drawing import line_text, section_svg, section_text
+from app.session import Session
+from app.showing import set_to
+from app.units import MM_PER, Unit, in_unit, labels_in, scales_in
 from rotrecon.overlay import LIGHT_BLUE, NAVY, RED, YELLOW
 from rotrecon.reconstruction import Reconstruction
 
@@ -44,13 +47,13 @@ class PagePanels:
         self._crop_of: object = None
         self._sections_of: object = None
 
-    def show(
-        self, result: Reconstruction | None, page: PageState, section: int, excluded: frozenset[int], moving: bool
-    ) -> None:
+    def show(self, session: Session, page: PageState, section: int, moving: bool) -> None:
         """Bring this page's panels up to date; pictures wait for the end of a drag."""
+        result = session.reconstruction
         if not moving:
             self._show_television(result, page)
-        self._show_sections(result, section, excluded)
+        set_to(self._depths, "content", in_unit(self._depths_html, session.unit))
+        self._show_sections(result, section, session.shown.excluded_sections, session.unit)
 
     def _show_television(self, result: Reconstruction | None, page: PageState) -> None:
         if self._television_of != (result, page.layer):
@@ -61,14 +64,16 @@ class PagePanels:
             self._crop.image = self._pictures.crop(page.last_point_px)
             self._crop.visible = True
 
-    def _show_sections(self, result: Reconstruction | None, section: int, excluded: frozenset[int]) -> None:
-        if self._sections_of == (result, section, excluded):
+    def _show_sections(self, result: Reconstruction | None, section: int, excluded: frozenset[int], unit: Unit) -> None:
+        if self._sections_of == (result, section, excluded, unit):
             return
-        self._sections_of = (result, section, excluded)
+        self._sections_of = (result, section, excluded, unit)
         count = section_count(result)
         chart = radius_chart(result, section)
-        self._chart.data = chart
-        scales = radius_scales(chart)
+        self._chart.data = tuple(column / MM_PER[unit] for column in chart)
+        set_to(self._chart, "axes", labels_in(RADIUS_AXES, unit))
+        set_to(self._chart, "series", labels_in(RADIUS_SERIES, unit))
+        scales = scales_in(radius_scales(chart), ("x", "y"), unit)
         if scales != self._chart.scales:
             self._chart.scales = scales
         self._section = section
@@ -80,7 +85,8 @@ class PagePanels:
             part.visible = count > 0
         self._restore.visible = bool(excluded)
         self._exclude.label = "Put this section back" if section in excluded else "Exclude this section"
-        text, line = escape(section_text(result, section)), escape(line_text(result, section))
+        texts = (section_text(result, section), line_text(result, section))
+        text, line = (in_unit(escape(said), unit) for said in texts)
         self._plane.content = (
             f'<div class="rr-caption" data-testid="section">{text}</div>{section_svg(result, section)}'
             f'<div class="rr-caption" data-testid="line">{line}</div>'
@@ -112,7 +118,8 @@ class PagePanels:
         opacity.on_update(self._choosing(lambda percent: OpacityChosen(float(percent) / 100)))
         near_m, far_m = self._pictures.depth_range_m
         ends = f"<span>{1000 * near_m:.0f} mm</span><span>{1000 * far_m:.0f} mm</span>"
-        self._gui.add_html(f'<div class="rr-caption"><div class="rr-bar"></div><div class="rr-ends">{ends}</div></div>')
+        self._depths_html = f'<div class="rr-caption"><div class="rr-bar"></div><div class="rr-ends">{ends}</div></div>'
+        self._depths = self._gui.add_html(self._depths_html)
         layer = self._gui.add_dropdown("Frame shows", LAYERS, initial_value="segmentation")
         layer.on_update(self._choosing(LayerChosen))
         self._television = self._gui.add_image(

@@ -31,6 +31,7 @@ from app.pictures import Pictures
 from app.pointer import PixelFinder
 from app.scene_view import SceneView
 from app.session import Notice, Session
+from app.showing import in_session_unit
 from rotrecon.reconstruction import Reconstruction
 
 NOTICE_SECONDS = 10.0
@@ -107,11 +108,11 @@ class PageView:
         if self._lit != (result, section) and page.view == "3D":
             self._lit = (result, section)
             self._scene.light_section(self.client, result, section)
-        self._panels.show(result, page, section, session.shown.excluded_sections, moving)
+        self._panels.show(session, page, section, moving)
         self._decision.show(session)
         self._say(session)
         if not moving:
-            self._inspection.show(result, page, section)
+            self._inspection.show(result, page, section, session.unit)
 
     def _show_view(self) -> None:
         """Change the standpoint, and what is seen from it, when the other view was chosen."""
@@ -154,7 +155,10 @@ class PageView:
         self._notice = session.notice
         if self._notice is not None:
             self._notification = self.client.add_notification(
-                self._notice.title, self._notice.text, color="orange", auto_close_seconds=NOTICE_SECONDS
+                self._notice.title,
+                in_session_unit(self._notice.text, session),
+                color="orange",
+                auto_close_seconds=NOTICE_SECONDS,
             )
 
     def _say(self, session: Session) -> None:
