@@ -182,6 +182,7 @@ def serve(
             deciding=deciding,
             capture=capture,
             notes=notes,
+            tour=scene is None,
         )
 
 

@@ -69,11 +69,12 @@ class Console:
         name_of: Callable[[int], str | None] = lambda client_id: SOMEBODY,
         capture: Capture | None = None,
         last: SessionFile | None = None,
+        tour: bool = False,
     ) -> None:
         """Without a `record` nothing can be decided; `name_of` says who is behind one of viser's clients.
 
         `open_viser` starts the server that its pages are on; without, one listens on `host` and `port` itself. What was
-        drawn and set in the `last` session on this frame is there again.
+        drawn and set in the `last` session on this frame is there again. A `tour` leads every page that is opened.
         """
         chosen = Chosen(settings, deciding or DecisionSettings())
         self.session = Session(
@@ -82,7 +83,7 @@ class Console:
             settings=settings,
             defaults=chosen,
         )
-        self._last = last
+        self._last, self._tour = last, tour
         if last is not None:
             self.session = last.resumed(self.session)
             notes += () if last.problem is None else (last.problem,)
@@ -261,6 +262,7 @@ class Console:
             self.panels,
             self._scene,
             lambda event: self._post_from(client.client_id, event),
+            self._tour,
         )
 
     def _post_from(self, client_id: int, event: Event | DecisionEvent | PageEvent) -> None:

@@ -13,11 +13,6 @@ from rotrecon.reconstruction import Reconstruction
 from rotrecon.tools import NoTool, ToolProposal
 
 MINUTE_S = 60.0
-NOBODY_HTML = (
-    '<div class="rr-hint rr-amber" data-testid="hint">Nobody is in control: '
-    "take it in the Decision panel below, then draw.</div>"
-)
-"""What to do first."""
 STYLES = {"proposed": "", "armed": " rr-armed", "confirmed": " rr-done", "overridden": " rr-done", "rejected": ""}
 
 

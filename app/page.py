@@ -40,6 +40,8 @@ class PageState:
     """Whether clicks on the picture are the ends of a distance, and not corners of an area."""
     ends_px: tuple[Pixel, ...] = ()
     """Of that distance: none, one or two."""
+    tour: int | None = None
+    """How many stations of the tour are ticked off; None when it is closed."""
 
 
 @dataclass(frozen=True)
@@ -114,6 +116,16 @@ class EndPointed:
     point_px: Pixel
 
 
+@dataclass(frozen=True)
+class TourStarted:
+    """From its first station on."""
+
+
+@dataclass(frozen=True)
+class TourClosed:
+    """For good, unless it is started again."""
+
+
 PageEvent = (
     ViewChosen
     | OpacityChosen
@@ -128,6 +140,8 @@ PageEvent = (
     | StepChosen
     | MeasuringChosen
     | EndPointed
+    | TourStarted
+    | TourClosed
 )
 
 
@@ -159,6 +173,10 @@ def page_step(page: PageState, event: PageEvent, section_count: int, middle_px: 
             return replace(page, step=max(step, 0))
         case MeasuringChosen(measuring):
             return replace(page, measuring=bool(measuring), ends_px=())
+        case TourStarted():
+            return replace(page, tour=0, section=None)
+        case TourClosed():
+            return replace(page, tour=None)
         case EndPointed(point) if page.measuring and all(isfinite(value) for value in point):
             return replace(page, ends_px=(point,) if len(page.ends_px) == 2 else (*page.ends_px, point))
         case _:

@@ -11,6 +11,7 @@ from app.deciding.events import DecisionEvent
 from app.deciding.states import Said
 from app.decision_panel import DecisionPanel
 from app.events import Event, HandleMoved, PointerDragged, VertexClicked
+from app.hint_panel import HintPanel
 from app.inspection_panel import InspectionPanel
 from app.object_drawing import Part, Pixel, on_frame
 from app.page import (
@@ -32,6 +33,7 @@ from app.pointer import PixelFinder
 from app.scene_view import SceneView
 from app.session import Notice, Session
 from app.showing import in_session_unit
+from app.tour import ticked
 from rotrecon.reconstruction import Reconstruction
 
 NOTICE_SECONDS = 10.0
@@ -48,10 +50,12 @@ class PageView:
         shared: Panels,
         scene: SceneView,
         post: Callable[[Event | DecisionEvent | PageEvent], None],
+        tour: bool = False,
     ) -> None:
-        self.client, self.state = client, PageState()
+        self.client, self.state = client, PageState(tour=0 if tour else None)
         self._pictures, self._scene, self._post = pictures, scene, post
         self._pixels = PixelFinder(pictures.frame)
+        self._hint = HintPanel(client, shared.help, post)
         self._panels = PagePanels(client, shared, pictures, post)
         self._decision = DecisionPanel(client, shared.decision, post)
         self._inspection = InspectionPanel(client.gui, shared.stages, pictures, post)
@@ -95,9 +99,11 @@ class PageView:
 
     def show(self, session: Session) -> None:
         """Bring everything on this page up to date."""
+        self.state = ticked(self.state, session, self.client.client_id)
         result, page = session.reconstruction, self.state
         section = section_shown(page, section_count(result))
         moving = session.preview is not None or not session.up_to_date
+        self._hint.show(session, page)
         self._show_notice(session)
         self._show_view()
         if page.view == "camera":

@@ -6,7 +6,6 @@ from typing import Any
 
 from viser import CommandHandle, GuiEvent, ViserServer
 
-from app.decision_text import NOBODY_HTML
 from app.events import (
     Cancelled,
     Cleared,
@@ -24,7 +23,7 @@ from app.knowledge import DIRECTION_NAMES, knowledge_text
 from app.object_drawing import UNKNOWN_MM
 from app.origins import origins_html
 from app.page import PageEvent, SectionStepped, ViewChosen, Zoomed
-from app.result_text import hint_html, result_html, why_html
+from app.result_text import result_html, why_html
 from app.session import Session
 from app.settings_panel import SettingsPanel
 from app.showing import in_session_unit, set_to, show_unit
@@ -75,19 +74,18 @@ class Panels:
         self._gui.main_panel.dock_right()
         self._gui.main_panel.set_width(PANEL_WIDTH_PX)
         self._gui.add_html(f"<style>{static_text('console.css')}</style>")
-        self._hint = self._gui.add_html("")
         self._result = self._gui.add_html("")
+        self._add_buttons("View", VIEW)
+        self._add_buttons("Drawing", HISTORY)
+        self._tool = self._gui.add_dropdown("A drag draws", tuple(TOOLS), hint="Shift + drag: the axis")
+        self._tool.on_update(self._choosing(TOOLS.get))
         self._kind = self._gui.add_dropdown("Object is a", (AUTO, *KINDS), initial_value=AUTO)
         self._kind.on_update(self._choosing(lambda value: KindChosen(None if value == AUTO else value)))
         self._add_knowledge()
-        self._tool = self._gui.add_dropdown("A drag draws", tuple(TOOLS), hint="Shift + drag: the axis")
-        self._tool.on_update(self._choosing(TOOLS.get))
-        self._add_buttons("Drawing", HISTORY)
-        self._add_buttons("View", VIEW)
         self._add_keys()
         panel = self._gui.add_panel()
         self.decision, self.sections, self.stages, tool, self.picture, *others = map(panel.add_tab, TABS)
-        why, draw, settings, keys = others
+        why, draw, settings, self.help = others
         with draw:
             self._add_controls()
         with tool:
@@ -98,15 +96,14 @@ class Panels:
                 self._origins = self._gui.add_html("")
         with settings:
             self._settings = SettingsPanel(self._gui, self._choosing)
-        with keys:
+        with self.help:
             about = "".join(f"<p>{escape(line)}</p>" for line in (name, *notes))
             self._gui.add_html(static_text("help.html") + f'<div class="rr-help"><h4>Scene</h4>{about}</div>')
         panel.dock_below(self._gui.main_panel)
 
     def show(self, session: Session) -> None:
         """Bring texts and controls up to date, sending only what has changed."""
-        nobody, self._unit = session.decision.control.holder is None, session.unit
-        set_to(self._hint, "content", NOBODY_HTML if nobody else in_session_unit(hint_html(session), session))
+        self._unit = session.unit
         set_to(self._result, "content", in_session_unit(result_html(session), session))
         set_to(self._kind, "value", session.shown.kind or AUTO)
         set_to(self._direction, "value", DIRECTION_NAMES[session.shown.direction])

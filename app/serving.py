@@ -31,13 +31,14 @@ def serve(
     certificate: Certificate | None = None,
     capture: Capture | None = None,
     notes: tuple[str, ...] = (),
+    tour: bool = False,
     announce: Callable[[str], None] = print,
 ) -> None:
     """Serve the console until interrupted; says where it is to be found, and how to get in.
 
-    Without a `record` nothing can be decided. Raises HostError, before anything is opened, for an address that cannot
-    be listened on, is taken, or that others can reach while users or TLS are missing; PeopleError for a file of users
-    that cannot be used.
+    Without a `record` nothing can be decided; a `tour` leads whoever opens a page. Raises HostError, before anything is
+    opened, for an address that cannot be listened on, is taken, or that others can reach while users or TLS are
+    missing; PeopleError for a file of users that cannot be used.
     """
     socket = listen(host, port, people, certificate)
     hidden = HiddenViser()
@@ -52,6 +53,7 @@ def serve(
         name_of=hidden.name_of,
         capture=capture,
         last=None if record is None else SessionFile(record.folder, frame),
+        tour=tour,
     )
     console.start()
     door = Door(hidden, people, socket, host, certificate, camera_commands=console.panels.camera_commands)
