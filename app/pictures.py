@@ -29,8 +29,8 @@ from rotrecon.residuals import with_residuals
 STAGES: dict[LayerName, Stage] = {"close pixels": "close", "accepted pixels": "accepted", "segmentation": "object"}
 """The layers that are figure 3 a, b and c of the paper."""
 SECTION_COLOR = (204, 121, 167)
-RULER_COLOR = (240, 228, 66)
-KEPT_COLOR, GONE_COLOR, BACK_COLOR = (60, 147, 208), (213, 94, 0), (0, 158, 115)
+RULER_COLOR = (255, 255, 255)
+KEPT_COLOR, GONE_COLOR, BACK_COLOR = (60, 147, 208), (213, 94, 0), (204, 121, 167)
 """Of a line of pixels: what a step left, took away and brought back."""
 STEP_HEIGHT_PX = 240
 PANEL_WIDTH_PX = 480

@@ -1,15 +1,20 @@
-"""A newcomer at the page: the tour from an empty frame to a confirmed tool, the settings, and inches."""
+"""A newcomer at the page: the tour from an empty frame to a confirmed tool, settings, inches, reading it, and touch."""
 
 from collections.abc import Iterator
 from contextlib import closing
 from pathlib import Path
 
 import pytest
-from playwright.sync_api import Browser, Locator, expect
+from playwright.sync_api import Browser, Locator, ViewportSize, expect
 
+from app.clock import seconds
 from app.console import Console
 from app.decided import decision_of
+from app.deciding.events import ControlGiven
+from app.events import Cleared
 from app.last_session import SessionFile
+from app.page import DarkChosen
+from app.panels import TABS
 from app.record.store import Record
 from app.tour import END, STATIONS
 from rotrecon.settings import Settings
@@ -18,6 +23,14 @@ from tests.browser.conftest import SLOW_PAGE, VIEWPORT
 from tests.browser.operator import TIMEOUT_S, Operator
 from tests.browser.test_deciding import arm, button, hold, state
 from tests.browser.test_page import drawing_events
+
+CONTRAST = (Path(__file__).parent / "contrast.js").read_text()
+BEYOND = """() => [...document.querySelectorAll("button, input, [role=tab], label")]
+    .filter(one => one.checkVisibility())
+    .filter(one => { const box = one.getBoundingClientRect(); return box.width && box.right > innerWidth; })
+    .map(one => one.outerHTML)"""
+"""What stands out of the screen on the right, where nothing can be scrolled."""
+SIZES: tuple[ViewportSize, ...] = ({"width": 1280, "height": 720}, {"width": 1024, "height": 768})
 
 
 @pytest.fixture(scope="module")
@@ -44,8 +57,9 @@ def newcomer(scene: Simulated, browser: Browser, tmp_path_factory: pytest.TempPa
 
 
 def tab(operator: Operator, name: str) -> None:
-    operator.page.get_by_role("tab", name=name).click()
-    operator.frames()
+    one = operator.page.get_by_role("tab", name=name)
+    one.click(force=True)  # without it, two frames of software WebGL are waited for
+    expect(one).to_have_attribute("aria-selected", "true")
 
 
 def at_station(operator: Operator, number: int) -> None:
@@ -130,3 +144,61 @@ def test_inches_stand_wherever_mm_stood_and_the_robot_is_told_the_same(newcomer:
     assert (after.digest, after.diameter_interval_m, after.state) == (told.digest, told.diameter_interval_m, "proposed")
     tab(newcomer, "Decision")
     state(newcomer, "proposed")
+
+
+def test_every_text_can_be_read_in_the_dark_and_in_the_light(newcomer: Operator) -> None:
+    for dark in (False, True):
+        newcomer.send(DarkChosen(dark))
+        for name in TABS:
+            tab(newcomer, name)
+            assert newcomer.page.evaluate(CONTRAST) == [], f"{name}, {'dark' if dark else 'light'}"
+    tab(newcomer, "Decision")
+    arm(newcomer)
+    assert newcomer.page.evaluate(CONTRAST) == []
+
+
+@pytest.mark.parametrize("size", SIZES, ids=lambda size: f"{size['width']}x{size['height']}")
+def test_every_control_can_be_reached_on_the_screens_that_are_meant(newcomer: Operator, size: ViewportSize) -> None:
+    page = newcomer.page
+    page.set_viewport_size(size)
+    for name in TABS:
+        tab(newcomer, name)
+        newcomer.until(lambda: page.evaluate(BEYOND) == [], f"{name} stands within the screen")
+    for name in ("3D", "Camera", "Undo", "Redo", "Clear"):
+        button(newcomer, name).scroll_into_view_if_needed()
+    page.set_viewport_size(VIEWPORT)
+    newcomer.settle()
+
+
+def test_a_finger_draws_arms_and_holds(newcomer: Operator, browser: Browser, scene: Simulated) -> None:
+    newcomer.send(Cleared(), ControlGiven(seconds(), newcomer.client_id))
+    context = browser.new_context(viewport=VIEWPORT, has_touch=True)
+    tablet = Operator(context.new_page(), newcomer.console)
+    finger = context.new_cdp_session(tablet.page)
+
+    def touch(kind: str, *at: tuple[float, float]) -> None:
+        points = [{"x": x, "y": y} for x, y in at]
+        finger.send("Input.dispatchTouchEvent", {"type": kind, "touchPoints": points})
+
+    corners = scene.drawing.area.vertices_px
+    places = [(choose(u for u, _ in corners), choose(v for _, v in corners)) for choose in (min, max)]
+    start, end = (tablet.frame_to_screen(*place) for place in places)
+    touch("touchStart", start)
+    for share in (0.3, 0.7, 1.0):
+        touch("touchMove", (start[0] + share * (end[0] - start[0]), start[1] + share * (end[1] - start[1])))
+    touch("touchEnd")
+    state(tablet, "proposed")
+    assert tablet.console.session.shown.proposed, "the axis is the program's"
+    box = button(tablet, "Undo").bounding_box()
+    assert box is not None
+    assert box["height"] >= 36
+    button(tablet, "1. Arm").tap()
+    state(tablet, "armed")
+    button(tablet, "2. Hold").scroll_into_view_if_needed()
+    box = button(tablet, "2. Hold").bounding_box()
+    assert box is not None
+    touch("touchStart", (box["x"] + box["width"] / 2, box["y"] + box["height"] / 2))
+    state(tablet, "confirmed")
+    touch("touchEnd")
+    tablet.settle()
+    context.close()
