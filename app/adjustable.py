@@ -41,11 +41,11 @@ class Adjustable:
 METHOD = "method"
 METHODS: tuple[Method, ...] = get_args(Method)
 MEASURING = (
-    Adjustable("layers", "Objects in front of each other", "More overlap in depth inside the area.", 1, 9, 1),
-    Adjustable("sigma_factor", "Depths that count, within", "Fewer where things lie close behind.", 2, 5, 0.1, "σ"),
-    Adjustable("rod_diameter_m", "A rod is at most thick", "What your clipper is meant for.", 5, 60, 1, "mm"),
-    Adjustable("rod_length_over_diameter", "and longer than thick by", "The same, of its length.", 2, 30, 0.5),
-    Adjustable("cone_half_angle_rad", "A cone tapers by at least", "What your grip cannot hold.", 0.5, 10, 0.1, "°"),
+    Adjustable("layers", "Objects in front of each other", "As many as overlap in depth in the area.", 1, 9, 1),
+    Adjustable("sigma_factor", "Depths belong together within", "Less where things lie close behind.", 2, 5, 0.1, "σ"),
+    Adjustable("rod_diameter_m", "A rod is at most as thick as", "What your clipper is meant for.", 5, 60, 1, "mm"),
+    Adjustable("rod_length_over_diameter", "and longer than thick, so many times", "Of its length.", 2, 30, 0.5),
+    Adjustable("cone_half_angle_rad", "A cone tapers to a side by", "Less is a cylinder.", 0.5, 10, 0.1, "°"),
 )
 """What a class is depends on what the cell handles and with which tools; how depths are told apart on what lies about.
 The other settings are thresholds that were measured over thousands of scenes, and nobody sees on one what they do."""

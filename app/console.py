@@ -229,8 +229,6 @@ class Console:
     def _show(self) -> None:
         """Show the session on every page; runs in a thread, and only one at a time."""
         session = self.told.visible
-        if self._last is not None:
-            self._last.keep(self.told)
         with _logged("the panels cannot be shown"):
             self.panels.show(session)
         with _logged("the scene cannot be shown"):
@@ -242,6 +240,8 @@ class Console:
         for client_id, page in list(self.pages.items()):
             with self._unless_gone(client_id):
                 page.show(session)
+        if self._last is not None:
+            self._last.keep(self.told)
 
     @contextmanager
     def _unless_gone(self, client_id: int) -> Iterator[None]:

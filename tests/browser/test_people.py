@@ -134,7 +134,7 @@ def test_inches_stand_wherever_mm_stood_and_the_robot_is_told_the_same(newcomer:
     page.get_by_role("option", name="inch").click()
     newcomer.until(lambda: newcomer.console.session.unit == "inch", "inches are chosen")
     newcomer.settle()
-    expect(setting(newcomer, "A rod is at most thick")).to_have_value("1.1811")
+    expect(setting(newcomer, "A rod is at most")).to_have_value("1.1811")
     for name in ("Decision", "Sections", "Stages", "Tool", "Picture", "Why", "Settings"):
         tab(newcomer, name)
         text = page.locator("body").inner_text()
