@@ -47,11 +47,10 @@ class CameraView:
         self, client: ClientHandle, frame: Frame, picture: Bytes, on_handle: HandleDragged, on_picture: PictureDragged
     ) -> None:
         self._client, self._frame, self._on_handle, self._on_picture = client, frame, on_handle, on_picture
-        scene, T = client.scene, frame.T_base_camera
-        self._root = scene.add_frame(
-            "/view", show_axes=False, wxyz=tf.SO3.from_matrix(T[:3, :3]).wxyz, position=T[:3, 3]
-        )
+        scene = client.scene
+        self._root = scene.add_frame("/view", show_axes=False)
         self.picture = self._add_picture(picture)
+        self.hold(frame)
         backdrop = scene.add_image(
             "/view/backdrop",
             np.full((2, 2, 3), 24, dtype=np.uint8),
@@ -70,6 +69,12 @@ class CameraView:
         self._axis = self._add_lines("axis", AXIS_COLOR)
         self._parts: list[Part] = []
         self._handles = [self._add_handle(number) for number in range(USUAL_HANDLES)]
+
+    def hold(self, frame: Frame) -> None:
+        """Stand where a frame was taken, with room for a picture of its size."""
+        self._frame, T = frame, frame.T_base_camera
+        self._root.wxyz, self._root.position = tf.SO3.from_matrix(T[:3, :3]).wxyz, T[:3, 3]
+        (self.picture.render_width, self.picture.render_height), self.picture.position = self._extent()
 
     def show(self, drawn: ObjectDrawing, vertices_px: tuple[Pixel, ...], page: PageState) -> None:
         """Draw area, axis, the open polygon and their handles."""
@@ -142,20 +147,25 @@ class CameraView:
         return self._frame.camera.unproject(points, np.full(points.shape[:-1], depth_m))
 
     def _add_picture(self, picture: Bytes) -> Any:
-        camera = self._frame.camera
-        corners = self._at([[-0.5, -0.5], [camera.width - 0.5, camera.height - 0.5]], PICTURE_M)
-        width_m, height_m, _ = corners[1] - corners[0]
+        (width_m, height_m), middle_m = self._extent()
         return self._client.scene.add_image(
             "/view/picture",
             picture,
-            float(width_m),
-            float(height_m),
+            width_m,
+            height_m,
             format="jpeg",
             jpeg_quality=JPEG_QUALITY,
-            position=corners.mean(axis=0),
+            position=middle_m,
             cast_shadow=False,
             receive_shadow=False,
         )
+
+    def _extent(self) -> tuple[tuple[float, float], Floats]:
+        """Width and height of the picture, and its middle (3,) in camera coordinates."""
+        camera = self._frame.camera
+        corners = self._at([[-0.5, -0.5], [camera.width - 0.5, camera.height - 0.5]], PICTURE_M)
+        width_m, height_m, _ = (corners[1] - corners[0]).tolist()
+        return (width_m, height_m), corners.mean(axis=0)
 
     def _add_lines(self, name: str, color: tuple[int, int, int]) -> Any:
         return self._client.scene.add_line_segments(

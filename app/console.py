@@ -13,7 +13,6 @@ from app.console_items import CameraMoved, FromPage, Item, PageClosed, PageOpene
 from app.deciding.events import (
     ClockTicked,
     DecisionEvent,
-    FrameArrived,
     FrameOpened,
     PageCame,
     PageWent,
@@ -24,8 +23,11 @@ from app.deciding.states import Deciding
 from app.decision_text import face
 from app.desk import Desk, Proposable
 from app.events import Event, Reconstructed
+from app.held import Held, Newer
 from app.measuring import measure, measure_finely
-from app.newer_frames import facts_of, newer_facts
+from app.newcomers import Newcomers
+from app.newer_frames import facts_of
+from app.newer_steps import NewerPrepared, NewerReady, NewerUnusable
 from app.page import PageEvent
 from app.page_view import BRAND_COLOR, PageView
 from app.panels import Panels
@@ -48,7 +50,7 @@ log = logging.getLogger(__name__)
 
 
 class Console:
-    """One frame, shown to any number of pages.
+    """One frame, shown to any number of pages, until the one in control takes a newer one.
 
     Everything that happens is put on one queue, in viser's event loop; there it steps the session, starts a
     measurement in a thread, and is shown. `idle` tells when nothing of that is left to do.
@@ -77,19 +79,29 @@ class Console:
         `open_viser` starts the server that its pages are on; without, one listens on `host` and `port` itself.
         """
         decision = Deciding(deciding or DecisionSettings())
-        self.session = Session((frame.camera.width, frame.camera.height), decision=decision)
+        held = Held(frame, name, capture or Capture(name, recorded=frame), notes)
+        self.session = Session(held.size_px, decision=decision, held=held)
         self.told = self.session
         """What pages and robots are told, all of it on disk; read it from any thread."""
-        self._name_of = name_of
-        self._desk = Desk(record, frame, settings, self.post)
-        self.frame, self.name, self._settings, self._notes = frame, name, settings, notes
+        self._name_of, self._settings, self._shown = name_of, settings, held
+        self._desk, self._newcomers = Desk(record, settings, self.post), Newcomers(self.post)
         self._host, self._port, self._cloud_points = host, port, cloud_points
-        self._capture = capture if capture is not None and capture.views else None
         self.pages: dict[int, PageView] = {}
         self._open_viser = open_viser or self._open_server
         self._opened: dict[int, ClientHandle] = {}
         self._measuring: dict[int, asyncio.Task[None]] = {}
         self._listeners: dict[object, Callable[[], object]] = {}
+
+    @property
+    def held(self) -> Held:
+        """What everybody is told that is drawn on and measured in."""
+        assert self.told.held is not None
+        return self.told.held
+
+    @property
+    def frame(self) -> Frame:
+        """The frame of that."""
+        return self.held.frame
 
     @property
     def address(self) -> str:
@@ -108,7 +120,7 @@ class Console:
         self.server.gui.configure_theme(
             dark_mode=True, show_logo=False, show_share_button=False, brand_color=BRAND_COLOR
         )
-        self.panels = Panels(self.server, self.name, self._notes, self._post_from)
+        self.panels = Panels(self.server, self.held, self._post_from)
         self._scene = SceneView(
             self.server, self.frame, self._pictures.television(None, "picture"), self._cloud_points, self._post_from
         )
@@ -129,11 +141,9 @@ class Console:
         with redirect_stdout(io.StringIO()):
             self.server.stop()
 
-    def newer(self, capture: Capture) -> None:
-        """Watch over a capture that came after the frame that is held; of any thread."""
-        area = self.told.shown.area
-        event = FrameArrived(seconds(), *newer_facts(self.frame, capture, area))
-        self._loop.call_soon_threadsafe(self.post, event)
+    def newer(self, newer: Newer) -> None:
+        """Announce a recording that came after the frame that is held; of any thread."""
+        self._loop.call_soon_threadsafe(self.post, newer)
 
     def subscribe(self, changed: Callable[[], object]) -> Callable[[], object]:
         """Call `changed`, quickly done, after the session may have changed; returns what ends that. Of any thread."""
@@ -166,14 +176,16 @@ class Console:
             for item in items:
                 with _logged("what happened was not taken in"):
                     self._take(item)
+            self.session = self._newcomers.compared(self.session)
             self._measure_latest()
             self._desk.prepare(self.session)
+            self._newcomers.prepare(self.session)
             only_time = all(isinstance(item, ClockTicked) for item in items)
             with _logged("what happened was not recorded"):
                 await self._tell(not only_time, any(isinstance(item, ClockTicked) for item in items))
-            if self._queue.empty() and not self._measuring and not self._desk.busy:
+            if self._queue.empty() and not (self._measuring or self._desk.busy or self._newcomers.busy):
                 self._settled.set()
-        tasks = (ticking, *self._measuring.values(), *self._desk.stop())
+        tasks = (ticking, *self._measuring.values(), *self._desk.stop(), *self._newcomers.stop())
         for task in tasks:
             task.cancel()
         await asyncio.gather(*tasks, return_exceptions=True)
@@ -206,7 +218,11 @@ class Console:
                 self.session = step(self.session, item)
             case Proposable():
                 self.session = self._desk.taken(self.session, item)
-            case ClockTicked() | PicturesSent() | FrameArrived():
+            case Newer():
+                self.session = self._newcomers.came(self.session, item)
+            case NewerPrepared() | NewerReady() | NewerUnusable():
+                self.session = self._newcomers.taken_in(self.session, item)
+            case ClockTicked() | PicturesSent():
                 self.session = step(self.session, item)
             case PageOpened(client):
                 self._opened[client.client_id] = client
@@ -225,20 +241,26 @@ class Console:
         if drawing is None or session.up_to_date or session.revision in self._measuring:
             return
         if len(self._measuring) < MOST_MEASUREMENTS:
-            finely = self._capture if session.measured_once else None
-            task = asyncio.create_task(self._measure(session.revision, drawing, finely))
+            assert session.held is not None
+            task = asyncio.create_task(
+                self._measure(session.revision, drawing, session.held, finely=session.measured_once)
+            )
             self._measuring[session.revision] = task
 
-    async def _measure(self, revision: int, drawing: Drawing, finely: Capture | None) -> None:
-        if finely is not None:
-            outcome = await asyncio.to_thread(measure_finely, finely, drawing, self._settings)
+    async def _measure(self, revision: int, drawing: Drawing, held: Held, finely: bool) -> None:
+        views = held.finely
+        if views is not None and finely:
+            outcome = await asyncio.to_thread(measure_finely, views, drawing, self._settings)
         else:
-            outcome = await asyncio.to_thread(measure, self.frame, drawing, self._settings)
-        self.post(Reconstructed(revision, outcome, coarse=finely is None and self._capture is not None))
+            outcome = await asyncio.to_thread(measure, held.frame, drawing, self._settings)
+        self.post(Reconstructed(revision, outcome, coarse=views is not None and not finely))
 
     def _show(self) -> None:
         """Show the session on every page; runs in a thread, and only one at a time."""
         session = self.told.visible
+        if self.held is not self._shown:
+            with _logged("the newer frame cannot be shown"):
+                self._hold(self.held)
         with _logged("the panels cannot be shown"):
             self.panels.show(session)
         with _logged("the scene cannot be shown"):
@@ -250,6 +272,15 @@ class Console:
         for client_id, page in list(self.pages.items()):
             with self._unless_gone(client_id):
                 page.show(session)
+
+    def _hold(self, held: Held) -> None:
+        """Put another frame in the place of the one that is shown."""
+        self._shown, self._pictures = held, Pictures(held.frame)
+        self.panels.hold(held)
+        self._scene.hold(held.frame, self._pictures.television(None, "picture"))
+        for client_id, page in list(self.pages.items()):
+            with self._unless_gone(client_id):
+                page.hold(self._pictures)
 
     @contextmanager
     def _unless_gone(self, client_id: int) -> Iterator[None]:

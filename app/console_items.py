@@ -4,9 +4,11 @@ from dataclasses import dataclass
 
 from viser import ClientHandle
 
-from app.deciding.events import ClockTicked, DecisionEvent, FrameArrived, PicturesSent
+from app.deciding.events import ClockTicked, DecisionEvent, PicturesSent
 from app.desk import Proposable
 from app.events import Event, Reconstructed
+from app.held import Newer
+from app.newer_steps import NewerPrepared, NewerReady, NewerUnusable
 from app.page import PageEvent
 
 
@@ -45,6 +47,9 @@ Item = (
     | Proposable
     | ClockTicked
     | PicturesSent
-    | FrameArrived
+    | Newer
+    | NewerPrepared
+    | NewerReady
+    | NewerUnusable
     | Stopped
 )

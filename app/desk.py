@@ -35,11 +35,12 @@ Posted = Proposable | ClockTicked | PicturesSent
 class Desk:
     """Everything but `write` runs in the console's event loop."""
 
-    def __init__(self, record: Record | None, frame: Frame, settings: Settings, post: Callable[[Posted], None]) -> None:
-        self._record, self._frame, self._settings, self._post = record, frame, settings, post
+    def __init__(self, record: Record | None, settings: Settings, post: Callable[[Posted], None]) -> None:
+        self._record, self._settings, self._post = record, settings, post
         self._evidence: Evidence | None = None
         self._measured_in: dict[str | None, Frame] = {}
-        """Frames by the digest of entries that are not yet on disk: views have another one for every area."""
+        """Frames by the digest of entries that are not yet on disk: views have another one for every area, and the
+        frame that is held may be another one by then."""
         self._preparing: asyncio.Task[None] | None = None
 
     @property
@@ -102,7 +103,7 @@ class Desk:
         return (self._preparing,)
 
     def _frame_of(self, entry: Entry) -> Frame:
-        return self._measured_in.get(entry.digest, self._frame)
+        return self._measured_in[entry.digest]
 
     def _digest(self, evidence: Evidence | None) -> str | None:
         """Of the evidence as it is at this moment."""

@@ -18,8 +18,12 @@ NO_BOX = (np.zeros((3, 3)), np.array([[0, 1, 2]]))
 class EnvelopeView:
     """Nodes under `/world/envelope`, named the same for as long as the program runs."""
 
-    def __init__(self, scene: SceneApi, frame: Frame, point_size_m: float) -> None:
-        self._scene, self._frame, self._point_size_m = scene, frame, point_size_m
+    def __init__(self, scene: SceneApi) -> None:
+        self._scene = scene
+
+    def hold(self, frame: Frame, point_size_m: float) -> None:
+        """The frame whose points the tool would hit, and how large they are shown."""
+        self._frame, self._point_size_m = frame, point_size_m
 
     def show(self, result: Reconstruction | None) -> None:
         """Show the tool at its place, or hide it."""

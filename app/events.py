@@ -135,6 +135,11 @@ class SectionsRestored:
 
 
 @dataclass(frozen=True)
+class FrameTaken:
+    """The newer frame that waits is to be held from now on."""
+
+
+@dataclass(frozen=True)
 class Reconstructed:
     """A measurement has come back."""
 
@@ -162,5 +167,6 @@ Event = (
     | ContactPlaced
     | SectionToggled
     | SectionsRestored
+    | FrameTaken
     | Reconstructed
 )

@@ -51,6 +51,10 @@ class InspectionPanel:
         overlay.on_update(self._choosing(OverlayChosen))
         measuring.on_update(self._choosing(lambda value: MeasuringChosen(bool(value))))
 
+    def hold(self, pictures: Pictures) -> None:
+        """The pictures of another frame."""
+        self._pictures, self._stage_of, self._rest_of = pictures, None, None
+
     def show(self, result: Reconstruction | None, page: PageState, section: int) -> None:
         """Bring it up to date."""
         if self._stage_of != (result, section, page.step):

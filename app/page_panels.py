@@ -44,6 +44,11 @@ class PagePanels:
         self._crop_of: object = None
         self._sections_of: object = None
 
+    def hold(self, pictures: Pictures) -> None:
+        """The pictures of another frame."""
+        self._pictures, self._television_of, self._crop_of = pictures, None, None
+        self._depth_bar.content = _depth_bar_html(pictures)
+
     def show(
         self, result: Reconstruction | None, page: PageState, section: int, excluded: frozenset[int], moving: bool
     ) -> None:
@@ -110,9 +115,7 @@ class PagePanels:
     def _add_picture(self) -> None:
         opacity = self._gui.add_slider("Depth, %", 0, 100, 5, 0)
         opacity.on_update(self._choosing(lambda percent: OpacityChosen(float(percent) / 100)))
-        near_m, far_m = self._pictures.depth_range_m
-        ends = f"<span>{1000 * near_m:.0f} mm</span><span>{1000 * far_m:.0f} mm</span>"
-        self._gui.add_html(f'<div class="rr-caption"><div class="rr-bar"></div><div class="rr-ends">{ends}</div></div>')
+        self._depth_bar = self._gui.add_html(_depth_bar_html(self._pictures))
         layer = self._gui.add_dropdown("Frame shows", LAYERS, initial_value="segmentation")
         layer.on_update(self._choosing(LayerChosen))
         self._television = self._gui.add_image(
@@ -138,3 +141,10 @@ class PagePanels:
                 self._post(event_of(event.target.value))
 
         return chosen
+
+
+def _depth_bar_html(pictures: Pictures) -> str:
+    """The colours of the depth map, with the depths at their ends."""
+    near_m, far_m = pictures.depth_range_m
+    ends = f"<span>{1000 * near_m:.0f} mm</span><span>{1000 * far_m:.0f} mm</span>"
+    return f'<div class="rr-caption"><div class="rr-bar"></div><div class="rr-ends">{ends}</div></div>'

@@ -1,6 +1,7 @@
 """One open page: what it shows of the session, its own choices, and what is done on its picture."""
 
 from collections.abc import Callable
+from dataclasses import replace
 
 import numpy as np
 from viser import ClientHandle, NotificationHandle, SceneNodeDragEvent, SceneNodePointerEvent
@@ -12,6 +13,7 @@ from app.deciding.states import Said
 from app.decision_panel import DecisionPanel
 from app.events import Event, HandleMoved, PointerDragged, VertexClicked
 from app.inspection_panel import InspectionPanel
+from app.newer_panel import NewerPanel
 from app.object_drawing import Part, Pixel, on_frame
 from app.page import (
     EndPointed,
@@ -52,6 +54,7 @@ class PageView:
         self._pictures, self._scene, self._post = pictures, scene, post
         self._pixels = PixelFinder(pictures.frame)
         self._panels = PagePanels(client, shared, pictures, post)
+        self._newer = NewerPanel(client, shared.decision, post)
         self._decision = DecisionPanel(client, shared.decision, post)
         self._inspection = InspectionPanel(client.gui, shared.stages, pictures, post)
         self._camera_view = CameraView(
@@ -86,6 +89,18 @@ class PageView:
         middle_px = session.shown.middle_px if not session.vertices_px else None
         self.state = page_step(self.state, event, section_count(result), middle_px)
 
+    def hold(self, pictures: Pictures) -> None:
+        """Show another frame; where this page looked is kept when the picture has the same size."""
+        before = self._pictures.frame.image.shape
+        self._pictures, self._pixels = pictures, PixelFinder(pictures.frame)
+        self.state = replace(self.state, ends_px=())
+        if pictures.frame.image.shape != before:
+            self.state = replace(self.state, zoom=1.0, center_px=None, last_point_px=None)
+        self._picture_of = None
+        self._camera_view.hold(pictures.frame)
+        self._panels.hold(pictures)
+        self._inspection.hold(pictures)
+
     def _section_under(self, pointed: SectionPointed, result: Reconstruction | None) -> int | None:
         if result is None or result.sections is None:
             return None
@@ -108,6 +123,7 @@ class PageView:
             self._lit = (result, section)
             self._scene.light_section(self.client, result, section)
         self._panels.show(result, page, section, session.shown.excluded_sections, moving)
+        self._newer.show(session)
         self._decision.show(session)
         self._say(session)
         if not moving:

@@ -20,7 +20,9 @@ from app.events import (
     Undone,
     VertexTakenBack,
 )
+from app.held import Held
 from app.knowledge import DIRECTION_NAMES, knowledge_text
+from app.newer_panel import newer_html
 from app.object_drawing import UNKNOWN_MM
 from app.origins import origins_html
 from app.page import PageEvent, SectionStepped, ViewChosen, Zoomed
@@ -62,7 +64,7 @@ Post = Callable[[int, Event | PageEvent], None]
 class Panels:
     """Controls and texts that belong to the server, so that all pages show the same."""
 
-    def __init__(self, server: ViserServer, name: str, notes: tuple[str, ...], post: Post) -> None:
+    def __init__(self, server: ViserServer, held: Held, post: Post) -> None:
         self._gui, self._post = server.gui, post
         self.camera_commands: list[CommandHandle] = []
         """Commands that move the camera of the page they come from and do nothing else."""
@@ -71,6 +73,7 @@ class Panels:
         self._gui.main_panel.set_width(PANEL_WIDTH_PX)
         self._gui.add_html(f"<style>{static_text('console.css')}</style>")
         self._hint = self._gui.add_html("")
+        self._newer = self._gui.add_html("")
         self._result = self._gui.add_html("")
         self._kind = self._gui.add_dropdown("Object is a", (AUTO, *KINDS), initial_value=AUTO)
         self._kind.on_update(self._choosing(lambda value: KindChosen(None if value == AUTO else value)))
@@ -91,14 +94,14 @@ class Panels:
             with self._gui.add_folder("Where does this number come from?", expand_by_default=False):
                 self._origins = self._gui.add_html(origins_html())
         with keys:
-            about = "".join(f"<p>{escape(line)}</p>" for line in (name, *notes))
-            self._gui.add_html(static_text("help.html") + f'<div class="rr-help"><h4>Scene</h4>{about}</div>')
+            self._help = self._gui.add_html(_help_html(held))
         panel.dock_below(self._gui.main_panel)
 
     def show(self, session: Session) -> None:
         """Bring texts and controls up to date, sending only what has changed."""
         nobody = session.decision.control.holder is None
         _set(self._hint, "content", NOBODY_HTML if nobody else hint_html(session))
+        _set(self._newer, "content", newer_html(session))
         _set(self._result, "content", result_html(session))
         _set(self._kind, "value", session.shown.kind or AUTO)
         _set(self._direction, "value", DIRECTION_NAMES[session.shown.direction])
@@ -109,6 +112,10 @@ class Panels:
         if session.preview is None:
             _set(self._why, "content", why_html(session))
             self._tools.show(session)
+
+    def hold(self, held: Held) -> None:
+        """Say of another frame which one it is."""
+        self._help.content = _help_html(held)
 
     def _add_knowledge(self) -> None:
         """Folded away: what is in force stands in its label."""
@@ -148,6 +155,12 @@ class Panels:
                 self._post(event.client_id, made)
 
         return chosen
+
+
+def _help_html(held: Held) -> str:
+    """All keys, and which scene it is."""
+    about = "".join(f"<p>{escape(line)}</p>" for line in (held.name, *held.notes))
+    return static_text("help.html") + f'<div class="rr-help"><h4>Scene</h4>{about}</div>'
 
 
 def _set(handle: Any, name: str, value: Any) -> None:

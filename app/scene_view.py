@@ -2,7 +2,7 @@
 
 import numpy as np
 from numpy.typing import NDArray
-from viser import ClientHandle, SceneNodePointerEvent, ViserServer
+from viser import ClientHandle, LineSegmentsHandle, SceneNodePointerEvent, ViserServer
 from viser import transforms as tf
 
 from app.envelope_view import EnvelopeView
@@ -29,19 +29,30 @@ class SceneView:
     """Nodes under `/world`, named the same for as long as the program runs."""
 
     def __init__(self, server: ViserServer, frame: Frame, picture: Bytes, cloud_points: int, post: Post) -> None:
-        self._scene, self._frame, self._post = server.scene, frame, post
+        self._scene, self._post, self._cloud_points = server.scene, post, cloud_points
         self._shown: Reconstruction | None = None
+        self._limits: list[LineSegmentsHandle] = []
+        self._scene.add_frame("/world", show_axes=False)
+        self._envelope = EnvelopeView(self._scene)
+        self.hold(frame, picture)
+
+    def hold(self, frame: Frame, picture: Bytes) -> None:
+        """Show a frame, in the place of the one before it: its cloud, camera and limits."""
+        self._frame = frame
         self._valid = np.isfinite(frame.depth_m).ravel()
         self._depth_m = float(np.median(frame.depth_m.ravel()[self._valid])) if self._valid.any() else 1.0
-        self._scene.add_frame("/world", show_axes=False)
-        self._add_cloud(cloud_points)
+        self._add_cloud()
         self._add_camera(picture)
         size_m = 0.1 * self._depth_m
         self._scene.add_frame("/world/base", axes_length=size_m, axes_radius=size_m / 25)
-        for limit, lines in limit_lines(frame.workspace, frame.camera, frame.T_base_camera).items():
+        for limit in self._limits:
+            limit.remove()
+        self._limits = [
             self._scene.add_line_segments(
                 f"/world/limits/{limit}", lines, LIMITS_COLOR, thickness=1.5, thickness_units="screen"
             )
+            for limit, lines in limit_lines(frame.workspace, frame.camera, frame.T_base_camera).items()
+        ]
         self._object = self._scene.add_point_cloud(
             "/world/object",
             np.zeros((1, 3)),
@@ -51,8 +62,7 @@ class SceneView:
             point_shading="flat",
             visible=False,
         )
-
-        self._envelope = EnvelopeView(self._scene, self._frame, self._point_size_m())
+        self._envelope.hold(frame, self._point_size_m())
 
     def show(self, result: Reconstruction | None) -> None:
         """Show what was segmented, and the solid with its axis, contact point and approach, if there is one."""
@@ -119,9 +129,9 @@ class SceneView:
         """Points as large as they are apart."""
         return 1.5 * self._depth_m / self._frame.camera.focal_px * self._stride
 
-    def _add_cloud(self, cloud_points: int) -> None:
-        """Every n-th point of the cloud both ways, so that about `cloud_points` are sent."""
-        self._stride = max(1, round(float(np.sqrt(self._valid.sum() / max(cloud_points, 1)))))
+    def _add_cloud(self) -> None:
+        """Every n-th point of the cloud both ways, so that about as many are sent as were asked for."""
+        self._stride = max(1, round(float(np.sqrt(self._valid.sum() / max(self._cloud_points, 1)))))
         number = np.arange(self._valid.size).reshape(self._frame.depth_m.shape)[:: self._stride, :: self._stride]
         chosen = number[self._valid.reshape(self._frame.depth_m.shape)[:: self._stride, :: self._stride]]
         self._scene.add_point_cloud(

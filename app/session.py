@@ -8,6 +8,7 @@ from app.deciding.noting import refused
 from app.deciding.step import decide
 from app.drawing_steps import drawn_on
 from app.events import Event, PageLeft, Refused
+from app.newer_steps import NewerEvent, with_newer
 from app.object_drawing import with_axis
 from app.session_state import Measured as Measured
 from app.session_state import Notice as Notice
@@ -26,7 +27,7 @@ class Done:
     event: Event
 
 
-def step(session: Session, event: Event | DecisionEvent | Done) -> Session:
+def step(session: Session, event: Event | DecisionEvent | NewerEvent | Done) -> Session:
     """The session after an event; an event that makes no sense leaves it as it is."""
     if isinstance(event, Done):
         why = no_control(session.decision, event.page)
@@ -35,6 +36,8 @@ def step(session: Session, event: Event | DecisionEvent | Done) -> Session:
         event = event.event
     if isinstance(event, DecisionEvent):
         return _decided(session, event)
+    if isinstance(event, NewerEvent):
+        return with_newer(session, event)
     return _bound(session, _drawn(session, event))
 
 
@@ -50,10 +53,14 @@ def _drawn(session: Session, event: Event) -> Session:
 
 
 def _decided(session: Session, event: DecisionEvent) -> Session:
-    """The session after something about the decision; a drag of a page that is no longer in control has no end."""
+    """The session after something about the decision.
+
+    What a page that is no longer in control has begun has no end: a drag, and the taking of a newer frame.
+    """
     after = replace(session, decision=decide(session.decision, event))
     if after.decision.control.holder == session.decision.control.holder:
         return after
+    after = replace(after, taking=None)
     return _bound(after, _drawn(after, PageLeft()))
 
 

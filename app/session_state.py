@@ -5,6 +5,7 @@ from typing import Literal
 
 from app.deciding.states import Deciding
 from app.events import Refused
+from app.held import Held, Newer, Taking
 from app.object_drawing import ObjectDrawing, Part, Pixel
 from rotrecon.reconstruction import Reconstruction
 
@@ -57,6 +58,12 @@ class Session:
     """The failure to measure what is shown, or to close the polygon; gone as soon as that changes."""
     decision: Deciding = field(default_factory=Deciding)
     """What is proposed, who may decide on it, and how far that has got."""
+    held: Held | None = None
+    """What is drawn on and measured in."""
+    newer: Newer | None = None
+    """The latest that has come since, and waits to be taken."""
+    taking: Taking | None = None
+    """The one that is being made the held frame."""
 
     @property
     def shown(self) -> ObjectDrawing:

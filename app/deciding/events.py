@@ -155,6 +155,13 @@ class FrameArrived(Timed):
 
 
 @dataclass(frozen=True)
+class AreaCompared(Timed):
+    """The area, drawn anew, was compared with the newest frame."""
+
+    changed: bool
+
+
+@dataclass(frozen=True)
 class Written(Timed):
     """The first so many entries of the outbox are on disk."""
 
@@ -193,6 +200,7 @@ DecisionEvent = (
     | FrameOpened
     | FrameReopened
     | FrameArrived
+    | AreaCompared
     | Written
     | NotWritten
     | ClockTicked

@@ -5,6 +5,7 @@ from dataclasses import replace
 from app.deciding.acting import Action, acted
 from app.deciding.control import answered, came, given, no_control, taken, unanswered, went
 from app.deciding.events import (
+    AreaCompared,
     ClockTicked,
     ControlAsked,
     ControlGiven,
@@ -54,7 +55,7 @@ def _applied(deciding: Deciding, event: DecisionEvent) -> Deciding:
             return given(deciding, event)
         case HandoverAnswered():
             return answered(deciding, event)
-        case FrameOpened() | FrameReopened() | FrameArrived():
+        case FrameOpened() | FrameReopened() | FrameArrived() | AreaCompared():
             return _framed(deciding, event)
         case Offered() | Unmeasured() | Voided() | PicturesSent():
             return _proposed(deciding, event)
@@ -105,7 +106,7 @@ def _proposed(deciding: Deciding, event: Offered | Unmeasured | Voided | Picture
             return replace(deciding, case=Case(count, event.offer), count=count, outbox=outbox)
 
 
-def _framed(deciding: Deciding, event: FrameOpened | FrameReopened | FrameArrived) -> Deciding:
+def _framed(deciding: Deciding, event: FrameOpened | FrameReopened | FrameArrived | AreaCompared) -> Deciding:
     watched = deciding.watched
     match event:
         case FrameOpened():
@@ -122,7 +123,9 @@ def _framed(deciding: Deciding, event: FrameOpened | FrameReopened | FrameArrive
         case FrameArrived() if watched is not None:
             watched = arrived(watched, event.facts, deciding.now, event.wall_s, event.changed)
             return replace(deciding, watched=watched)
-        case FrameArrived():
+        case AreaCompared() if watched is not None:
+            return replace(deciding, watched=replace(watched, changed=event.changed))
+        case FrameArrived() | AreaCompared():
             return deciding
 
 
