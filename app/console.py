@@ -15,6 +15,7 @@ from app.deciding.events import (
     DecisionEvent,
     FrameOpened,
     PageCame,
+    PageHeard,
     PageWent,
     PicturesSent,
 )
@@ -23,6 +24,7 @@ from app.deciding.states import Deciding
 from app.decision_text import face
 from app.desk import Desk, Proposable
 from app.events import Event, Reconstructed
+from app.heartbeat import Heartbeat
 from app.held import Held, Newer
 from app.measuring import measure, measure_finely
 from app.newcomers import Newcomers
@@ -84,6 +86,7 @@ class Console:
         self.told = self.session
         """What pages and robots are told, all of it on disk; read it from any thread."""
         self._name_of, self._settings, self._shown = name_of, settings, held
+        self._heartbeat = Heartbeat(decision.settings.silent_s)
         self._desk, self._newcomers = Desk(record, settings, self.post), Newcomers(self.post)
         self._host, self._port, self._cloud_points = host, port, cloud_points
         self.pages: dict[int, PageView] = {}
@@ -180,7 +183,7 @@ class Console:
             self._measure_latest()
             self._desk.prepare(self.session)
             self._newcomers.prepare(self.session)
-            only_time = all(isinstance(item, ClockTicked) for item in items)
+            only_time = all(isinstance(item, ClockTicked | PageHeard) for item in items)
             with _logged("what happened was not recorded"):
                 await self._tell(not only_time, any(isinstance(item, ClockTicked) for item in items))
             if self._queue.empty() and not (self._measuring or self._desk.busy or self._newcomers.busy):
@@ -207,6 +210,7 @@ class Console:
     def _take(self, item: Item) -> None:
         match item:
             case FromPage(client_id, event):
+                self.session = step(self.session, PageHeard(seconds(), client_id))
                 if isinstance(event, Event):
                     self.session = step(self.session, Done(client_id, event))
                 elif isinstance(event, DecisionEvent):
@@ -222,7 +226,10 @@ class Console:
                 self.session = self._newcomers.came(self.session, item)
             case NewerPrepared() | NewerReady() | NewerUnusable():
                 self.session = self._newcomers.taken_in(self.session, item)
-            case ClockTicked() | PicturesSent():
+            case ClockTicked(at):
+                self.session = step(self.session, item)
+                self._heartbeat.ask(self.session.decision.control.holder, at, self.server.get_clients())
+            case PicturesSent() | PageHeard():
                 self.session = step(self.session, item)
             case PageOpened(client):
                 self._opened[client.client_id] = client
@@ -313,7 +320,9 @@ class Console:
         self.post(PageClosed(client.client_id))
 
     async def _camera_moved(self, camera: CameraHandle) -> None:
-        page = self.pages.get(camera.client.client_id)
+        client_id = camera.client.client_id
+        self.post(PageHeard(seconds(), client_id))
+        page = self.pages.get(client_id)
         if page is not None and page.state.view == "camera":
             self.post(CameraMoved())
 

@@ -4,7 +4,7 @@ from dataclasses import dataclass
 
 from viser import ClientHandle
 
-from app.deciding.events import ClockTicked, DecisionEvent, PicturesSent
+from app.deciding.events import ClockTicked, DecisionEvent, PageHeard, PicturesSent
 from app.desk import Proposable
 from app.events import Event, Reconstructed
 from app.held import Newer
@@ -46,6 +46,7 @@ Item = (
     | Reconstructed
     | Proposable
     | ClockTicked
+    | PageHeard
     | PicturesSent
     | Newer
     | NewerPrepared

@@ -62,7 +62,7 @@ class DecisionPanel:
         holds = deciding.control.holder == self._page
         recorded = deciding.watched is not None and deciding.watched.held.source == "recorded"
         stale = bool(problems(deciding.watched, deciding.settings, deciding.now))
-        _set(self._again, "visible", holds and recorded and stale)
+        _set(self._again, "visible", holds and recorded and stale and session.newer is None)
         for part in (self._class, self._name):
             _set(part, "visible", holds and case is not None and deciding.veiled)
         self._show_two(deciding, case if holds and not deciding.veiled else None)

@@ -43,7 +43,7 @@ class NewerPanel:
 def newer_html(session: Session) -> str:
     """What waits to be taken, or how far it has got, in a line; nothing while nothing does."""
     line = newer_line(session)
-    return f'<div class="rr-caption rr-amber" data-testid="newer">{escape(line)}</div>' if line else ""
+    return f'<div class="rr-hint rr-amber" data-testid="newer">{escape(line)}</div>' if line else ""
 
 
 def newer_line(session: Session) -> str:

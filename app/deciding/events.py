@@ -43,6 +43,11 @@ class PageWent(FromPage):
 
 
 @dataclass(frozen=True)
+class PageHeard(FromPage):
+    """A page has said something, or has answered that it is there."""
+
+
+@dataclass(frozen=True)
 class ControlTaken(FromPage):
     """Control that nobody has is taken."""
 
@@ -183,6 +188,7 @@ class ClockTicked(Timed):
 DecisionEvent = (
     PageCame
     | PageWent
+    | PageHeard
     | ControlTaken
     | ControlGiven
     | ControlAsked

@@ -33,6 +33,8 @@ class Control:
     pages: tuple[Page, ...] = ()
     holder: int | None = None
     asked: Asked | None = None
+    heard: float = 0.0
+    """When the page in control was heard of last."""
 
     def name(self, page: int | None) -> str:
         """Who is at a page."""

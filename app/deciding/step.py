@@ -3,7 +3,7 @@
 from dataclasses import replace
 
 from app.deciding.acting import Action, acted
-from app.deciding.control import answered, came, given, no_control, taken, unanswered, went
+from app.deciding.control import answered, came, given, heard, no_control, silent, taken, unanswered, went
 from app.deciding.events import (
     AreaCompared,
     ClockTicked,
@@ -18,6 +18,7 @@ from app.deciding.events import (
     NotWritten,
     Offered,
     PageCame,
+    PageHeard,
     PageWent,
     PicturesSent,
     Unmeasured,
@@ -38,7 +39,7 @@ MOST_KEPT = 100
 def decide(deciding: Deciding, event: DecisionEvent) -> Deciding:
     """The decision after an event; what is over by then is over before the event counts."""
     deciding = replace(deciding, now=max(deciding.now, event.at))
-    return _guarded(_applied(_guarded(_expired(unanswered(deciding))), event))
+    return _guarded(_applied(_guarded(_expired(silent(unanswered(deciding)))), event))
 
 
 def _applied(deciding: Deciding, event: DecisionEvent) -> Deciding:
@@ -49,6 +50,8 @@ def _applied(deciding: Deciding, event: DecisionEvent) -> Deciding:
             return came(deciding, event)
         case PageWent():
             return went(deciding, event)
+        case PageHeard():
+            return heard(deciding, event)
         case ControlTaken() | ControlAsked():
             return taken(deciding, event)
         case ControlGiven():
@@ -118,7 +121,7 @@ def _framed(deciding: Deciding, event: FrameOpened | FrameReopened | FrameArrive
                 why = "A live frame does not get newer by itself: take a new one."
             if why is not None or watched is None:
                 return refused(deciding, event.page, why or "")
-            watched = opened(watched.held, deciding.now, event.wall_s)
+            watched = replace(opened(watched.held, deciding.now, event.wall_s), changed=watched.changed)
             return replace(_renewed(deciding, "the frame was opened again"), watched=watched)
         case FrameArrived() if watched is not None:
             watched = arrived(watched, event.facts, deciding.now, event.wall_s, event.changed)

@@ -16,6 +16,7 @@ from app.deciding.events import (
     OverrideDropped,
     OverrideTyped,
     PageCame,
+    PageHeard,
     PageWent,
     PicturesSent,
     RejectPressed,
@@ -30,6 +31,7 @@ from app.record.entries import Entry
 from tests.deciding.desk import ANN, BOB, OFFER, Table, offer
 
 WHY = "the cutter is blunt today"
+SILENCE = DecisionSettings(silent_s=5.0)
 DANGEROUS = DecisionSettings(dangerous=frozenset({"cylinder"}))
 
 
@@ -265,6 +267,40 @@ def test_whoever_does_not_answer_loses_control(table: Table) -> None:
     assert table.deciding.control.holder == ANN
     table.do(ClockTicked(table.later(1.5)))
     assert table.deciding.control.holder == BOB
+
+
+def test_a_page_in_control_that_falls_silent_loses_it_and_is_told() -> None:
+    table = Table(SILENCE)
+    table.arm()
+    table.do(PageHeard(table.later(4.0), ANN), PageHeard(table.later(4.0), BOB))
+    assert table.deciding.control.holder == ANN
+    assert table.state == "armed"
+    table.do(ClockTicked(table.later(1.5)))
+    assert table.deciding.control.holder is None, "what others say does not keep it"
+    assert table.state == "proposed"
+    assert table.written[-1].kind == "disarmed"
+    assert "did not answer for 5 s" in table.said_to(ANN)
+    table.do(PageHeard(table.now, ANN))
+    assert table.deciding.control.holder is None, "a page that comes back watches"
+    table.do(ControlTaken(table.later(60.0), ANN))
+    assert table.deciding.control.holder == ANN, "and may take it again"
+
+
+def test_control_goes_from_a_silent_page_to_the_one_that_asks() -> None:
+    table = Table(SILENCE)
+    table.do(PageHeard(table.later(1.0), ANN), ControlAsked(table.later(4.0), BOB), ClockTicked(table.later(1.5)))
+    assert table.deciding.control.holder == BOB
+    table.do(ClockTicked(table.later(4.0)))
+    assert table.deciding.control.holder == BOB, "whose time begins when it gets it"
+
+
+def test_what_a_silent_page_does_too_late_does_nothing() -> None:
+    table = Table(SILENCE)
+    table.arm()
+    table.later(5.5)
+    table.hold(1.3)
+    assert table.state == "proposed"
+    assert "confirmed" not in table.kinds
 
 
 def test_control_given_back_goes_to_whoever_asked_or_to_nobody(table: Table) -> None:
