@@ -2,7 +2,7 @@
 
 from collections.abc import Callable, Coroutine
 from itertools import pairwise
-from typing import Any
+from typing import Any, Literal
 
 import numpy as np
 from viser import ClientHandle, IcosphereHandle, SceneNodeDragEvent
@@ -10,11 +10,12 @@ from viser import transforms as tf
 
 from app.object_drawing import ObjectDrawing, Part, Pixel
 from app.page import PageState
+from app.pictures import PICTURE_QUALITY
 from rotrecon.arrays import Bytes, Floats
 from rotrecon.camera import rotate
 from rotrecon.frame import Frame
 
-PICTURE_M, LINES_M, HANDLES_M, BACKDROP_M = 1.0, 0.99, 0.98, 1.02
+PICTURE_M, LAYER_M, LINES_M, HANDLES_M, BACKDROP_M = 1.0, 0.995, 0.99, 0.98, 1.02
 """Depths of the nodes before the camera; the handles come first, so that they win over the picture."""
 BACKDROP_SIZE_M = 40.0
 HANDLE_RADIUS_PX = 9.0
@@ -29,7 +30,8 @@ CLOSING_COLOR = (128, 88, 0)
 """Of the line that would close a polygon that is still open."""
 MARGIN = 1.04
 """Room round the picture, so that a corner on its border can be seen and grabbed."""
-JPEG_QUALITY = 85
+NOTHING = np.zeros((2, 2, 4), dtype=np.uint8)
+"""A layer that shows nothing."""
 KEY_MODIFIERS = ("cmd/ctrl", "alt", "cmd/ctrl+alt", "cmd/ctrl+shift", "alt+shift", "cmd/ctrl+alt+shift")
 
 HandleDragged = Callable[[Part, int, SceneNodeDragEvent], None]
@@ -49,7 +51,9 @@ class CameraView:
         self._client, self._frame, self._on_handle, self._on_picture = client, frame, on_handle, on_picture
         scene = client.scene
         self._root = scene.add_frame("/view", show_axes=False)
-        self.picture = self._add_picture(picture)
+        self.picture = self._add_image("picture", picture, "jpeg")
+        self.layer = self._add_image("layer", NOTHING, "png")
+        """What is drawn over the picture: it takes no clicks, and is small where the picture is not."""
         self.hold(frame)
         backdrop = scene.add_image(
             "/view/backdrop",
@@ -74,7 +78,8 @@ class CameraView:
         """Stand where a frame was taken, with room for a picture of its size."""
         self._frame, T = frame, frame.T_base_camera
         self._root.wxyz, self._root.position = tf.SO3.from_matrix(T[:3, :3]).wxyz, T[:3, 3]
-        (self.picture.render_width, self.picture.render_height), self.picture.position = self._extent()
+        for image, depth_m in ((self.picture, PICTURE_M), (self.layer, LAYER_M)):
+            (image.render_width, image.render_height), image.position = self._extent(depth_m)
 
     def show(self, drawn: ObjectDrawing, vertices_px: tuple[Pixel, ...], page: PageState) -> None:
         """Draw area, axis, the open polygon and their handles."""
@@ -146,24 +151,23 @@ class CameraView:
         points = np.asarray(pixels, dtype=np.float64)
         return self._frame.camera.unproject(points, np.full(points.shape[:-1], depth_m))
 
-    def _add_picture(self, picture: Bytes) -> Any:
-        (width_m, height_m), middle_m = self._extent()
+    def _add_image(self, name: str, image: Bytes, form: Literal["jpeg", "png"]) -> Any:
+        """An image whose place and size are not known yet."""
         return self._client.scene.add_image(
-            "/view/picture",
-            picture,
-            width_m,
-            height_m,
-            format="jpeg",
-            jpeg_quality=JPEG_QUALITY,
-            position=middle_m,
+            f"/view/{name}",
+            image,
+            1.0,
+            1.0,
+            format=form,
+            jpeg_quality=PICTURE_QUALITY,
             cast_shadow=False,
             receive_shadow=False,
         )
 
-    def _extent(self) -> tuple[tuple[float, float], Floats]:
-        """Width and height of the picture, and its middle (3,) in camera coordinates."""
+    def _extent(self, depth_m: float) -> tuple[tuple[float, float], Floats]:
+        """Width and height of the picture at a depth, and its middle (3,) in camera coordinates."""
         camera = self._frame.camera
-        corners = self._at([[-0.5, -0.5], [camera.width - 0.5, camera.height - 0.5]], PICTURE_M)
+        corners = self._at([[-0.5, -0.5], [camera.width - 0.5, camera.height - 0.5]], depth_m)
         width_m, height_m, _ = (corners[1] - corners[0]).tolist()
         return (width_m, height_m), corners.mean(axis=0)
 

@@ -7,6 +7,7 @@ from typing import Any
 import numpy as np
 from viser import GuiApi, GuiEvent, GuiTabHandle
 
+from app.encoded import put
 from app.inspection import line_in, residuals_in
 from app.inspection_text import candidates_html, distance_html, residuals_html
 from app.page import OVERLAYS, MeasuringChosen, OverlayChosen, PageEvent, PageState, StepChosen
@@ -79,10 +80,10 @@ class InspectionPanel:
             self._step.max = len(line.stages)
         if self._step.value != step + 1:
             self._step.value = min(step + 1, int(self._step.max))
-        image = None if result is None else self._pictures.step(result, section, step)
+        image = None if result is None else self._pictures.sent_step(result, section, step)
         self._image.visible = image is not None
         if image is not None:
-            self._image.image = image
+            put(self._image, image)
 
     def _choosing(self, event_of: Callable[[Any], PageEvent]) -> Any:
         """A callback that posts the event a value stands for, when the page and not the program has set it."""

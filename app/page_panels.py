@@ -16,6 +16,7 @@ from app.charts import (
     radius_scales,
     section_count,
 )
+from app.encoded import put
 from app.events import Event, SectionsRestored, SectionToggled
 from app.page import LAYERS, DarkChosen, LayerChosen, OpacityChosen, PageEvent, PageState, SectionChosen
 from app.panels import Panels
@@ -60,7 +61,7 @@ class PagePanels:
     def _show_television(self, result: Reconstruction | None, page: PageState) -> None:
         if self._television_of != (result, page.layer):
             self._television_of = (result, page.layer)
-            self._television.image = self._pictures.television(result, page.layer)
+            put(self._television, self._pictures.sent_television(result, page.layer))
         if page.last_point_px is not None and self._crop_of != page.last_point_px:
             self._crop_of = page.last_point_px
             self._crop.image = self._pictures.crop(page.last_point_px)

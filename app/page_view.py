@@ -11,6 +11,7 @@ from app.charts import section_count
 from app.deciding.events import DecisionEvent
 from app.deciding.states import Said
 from app.decision_panel import DecisionPanel
+from app.encoded import put
 from app.events import Event, HandleMoved, PointerDragged, VertexClicked
 from app.inspection_panel import InspectionPanel
 from app.newer_panel import NewerPanel
@@ -62,7 +63,8 @@ class PageView:
         )
         self._world = client.scene.add_frame("/world", show_axes=False)
         self._drag_start_px: Pixel = (0.0, 0.0)
-        self._picture_of: object = (None, 0.0, None, "nothing", ())
+        self._picture_of: float | None = 0.0
+        self._layer_of: object = (None, 0.0, 0, "nothing", ())
         self._lit: object = None
         self._view = ""
         self._dark = True
@@ -96,7 +98,7 @@ class PageView:
         self.state = replace(self.state, ends_px=())
         if pictures.frame.image.shape != before:
             self.state = replace(self.state, zoom=1.0, center_px=None, last_point_px=None)
-        self._picture_of = None
+        self._picture_of = self._layer_of = None
         self._camera_view.hold(pictures.frame)
         self._panels.hold(pictures)
         self._inspection.hold(pictures)
@@ -152,13 +154,14 @@ class PageView:
             self._scene.look(self.client, self._world_pose)
 
     def _show_picture(self, result: Reconstruction | None, section: int) -> None:
-        opacity = self.state.depth_opacity
-        overlay, ends_px = self.state.overlay, self.state.ends_px
-        key = (result, opacity, None if result is None else section, overlay, ends_px)
-        if key != self._picture_of:
-            self._picture_of = key
-            image = self._pictures.camera_view(result, opacity, section, overlay)
-            self._camera_view.picture.image = self._pictures.with_ends(image, ends_px) if ends_px else image
+        page = self.state
+        if page.depth_opacity != self._picture_of:
+            self._picture_of = page.depth_opacity
+            put(self._camera_view.picture, self._pictures.sent_picture(page.depth_opacity))
+        key = (result, page.depth_opacity, 0 if result is None else section, page.overlay, page.ends_px)
+        if key != self._layer_of:
+            self._layer_of = key
+            put(self._camera_view.layer, self._pictures.sent_layer(*key))
 
     def _show_notice(self, session: Session) -> None:
         """Tell of a failure, and take that away when it is no longer one of what is shown."""
