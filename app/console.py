@@ -204,7 +204,6 @@ class Console:
             with _logged("a listener was not told"):
                 changed()
         await asyncio.to_thread(self._show)
-        self.server.flush()
         self._desk.shown(self.told, self.pages)
 
     def _take(self, item: Item) -> None:
@@ -268,17 +267,21 @@ class Console:
         if self.held is not self._shown:
             with _logged("the newer frame cannot be shown"):
                 self._hold(self.held)
-        with _logged("the panels cannot be shown"):
-            self.panels.show(session)
-        with _logged("the scene cannot be shown"):
-            self._scene.show(session.reconstruction)
+        with self.server.atomic():
+            with _logged("the panels cannot be shown"):
+                self.panels.show(session)
+            with _logged("the scene cannot be shown"):
+                self._scene.show(session.reconstruction)
+        self.server.flush()
         while self._opened:
             client_id, client = self._opened.popitem()
             with self._unless_gone(client_id):
                 self.pages[client_id] = self._new_page(client)
         for client_id, page in list(self.pages.items()):
             with self._unless_gone(client_id):
-                page.show(session)
+                with page.client.atomic():
+                    page.show(session)
+                page.client.flush()
 
     def _hold(self, held: Held) -> None:
         """Put another frame in the place of the one that is shown."""

@@ -27,9 +27,8 @@ def as_jpeg(image: Bytes, quality: int) -> Encoded:
 
 def as_layer(image: Bytes, below: Bytes) -> Encoded:
     """What a picture (H, W, 3) RGB shows that the one below it does not, the rest transparent."""
-    differs = cv2.inRange(cv2.absdiff(image, below), (0, 0, 0), (0, 0, 0)) == 0
-    layer = cv2.cvtColor(image, cv2.COLOR_RGB2BGRA)
-    layer[~differs] = 0
+    differs = cv2.bitwise_not(cv2.inRange(cv2.absdiff(image, below), (0, 0, 0), (0, 0, 0)))
+    layer = cv2.copyTo(cv2.cvtColor(image, cv2.COLOR_RGB2BGRA), differs)
     _, data = cv2.imencode(".png", layer, [cv2.IMWRITE_PNG_COMPRESSION, SPARSE_COMPRESSION])
     return Encoded(data.tobytes(), "png")
 
