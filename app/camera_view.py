@@ -8,6 +8,7 @@ import numpy as np
 from viser import ClientHandle, IcosphereHandle, SceneNodeDragEvent
 from viser import transforms as tf
 
+from app.encoded import Layer, put
 from app.object_drawing import ObjectDrawing, Part, Pixel
 from app.page import PageState
 from app.pictures import PICTURE_QUALITY
@@ -52,7 +53,7 @@ class CameraView:
         scene = client.scene
         self._root = scene.add_frame("/view", show_axes=False)
         self.picture = self._add_image("picture", picture, "jpeg")
-        self.layer = self._add_image("layer", NOTHING, "png")
+        self._layer = self._add_image("layer", NOTHING, "png")
         """What is drawn over the picture: it takes no clicks, and is small where the picture is not."""
         self.hold(frame)
         backdrop = scene.add_image(
@@ -79,8 +80,12 @@ class CameraView:
         self._frame, T = frame, frame.T_base_camera
         self._drawn: object = None
         self._root.wxyz, self._root.position = tf.SO3.from_matrix(T[:3, :3]).wxyz, T[:3, 3]
-        for image, depth_m in ((self.picture, PICTURE_M), (self.layer, LAYER_M)):
-            (image.render_width, image.render_height), image.position = self._extent(depth_m)
+        self._place(self.picture, (0, 0, frame.camera.width, frame.camera.height), PICTURE_M)
+
+    def cover(self, layer: Layer) -> None:
+        """Lay something over the picture."""
+        self._place(self._layer, layer.box_px, LAYER_M)
+        put(self._layer, layer.picture)
 
     def show(self, drawn: ObjectDrawing, vertices_px: tuple[Pixel, ...], page: PageState) -> None:
         """Draw area, axis, the open polygon and their handles, unless they are drawn so already."""
@@ -169,12 +174,12 @@ class CameraView:
             receive_shadow=False,
         )
 
-    def _extent(self, depth_m: float) -> tuple[tuple[float, float], Floats]:
-        """Width and height of the picture at a depth, and its middle (3,) in camera coordinates."""
-        camera = self._frame.camera
-        corners = self._at([[-0.5, -0.5], [camera.width - 0.5, camera.height - 0.5]], depth_m)
-        width_m, height_m, _ = (corners[1] - corners[0]).tolist()
-        return (width_m, height_m), corners.mean(axis=0)
+    def _place(self, image: Any, box_px: tuple[int, int, int, int], depth_m: float) -> None:
+        """Put an image at a depth where it covers a box (left, top, width, height) of the frame."""
+        left, top, width, height = box_px
+        corners = self._at([[left - 0.5, top - 0.5], [left + width - 0.5, top + height - 0.5]], depth_m)
+        image.render_width, image.render_height, _ = (corners[1] - corners[0]).tolist()
+        image.position = corners.mean(axis=0)
 
     def _add_lines(self, name: str, color: tuple[int, int, int]) -> Any:
         return self._client.scene.add_line_segments(

@@ -161,7 +161,7 @@ class PageView:
         key = (result, page.depth_opacity, 0 if result is None else section, page.overlay, page.ends_px)
         if key != self._layer_of:
             self._layer_of = key
-            put(self._camera_view.layer, self._pictures.sent_layer(*key))
+            self._camera_view.cover(self._pictures.sent_layer(*key))
 
     def _show_notice(self, session: Session) -> None:
         """Tell of a failure, and take that away when it is no longer one of what is shown."""

@@ -5,7 +5,7 @@ from functools import cached_property, lru_cache
 import cv2
 import numpy as np
 
-from app.encoded import Encoded, as_jpeg, as_layer
+from app.encoded import Encoded, Layer, as_jpeg, as_layer
 from app.inspection import grasp_in, line_in, residuals_in
 from app.object_drawing import Pixel
 from app.page import LayerName, OverlayName
@@ -80,7 +80,7 @@ class Pictures:
         section: int,
         overlay: OverlayName,
         ends_px: tuple[Pixel, ...],
-    ) -> Encoded:
+    ) -> Layer:
         """All that is drawn over it, as it is sent."""
         image = self.camera_view(result, opacity, section, overlay)
         return as_layer(self.with_ends(image, ends_px) if ends_px else image, self.with_depth(opacity))
