@@ -39,8 +39,8 @@ UNTEXTURED_DOUBT, UNTEXTURED_BALL_DOUBT, FULLY_TEXTURED = 0.015, 0.03, 0.5
 """Standard error of the radius, over the radius, that outline and shading of a plain object leave, and shading alone
 that of a ball; and the share of textured pixels at which nothing of it is left."""
 ALIKE = 5.0
-"""Half a likelihood's logarithm: in a shallow valley of brightness the end that matched depth led to is held to, for its
-outline was looked for where the object is."""
+"""Half a likelihood's logarithm: in a shallow valley of brightness, the end that matched depth led to is held to, for
+its outline was looked for where the object is."""
 LEAST_CORRELATION = 0.5
 """Of two pictures over a surface that is where they agree best; less is none that they show."""
 
@@ -93,7 +93,9 @@ def refined(one: Ranked, scene: Scene, others: tuple[Other, ...]) -> Refinement 
         return None
     refinement = _finished(one, fit, climbed, scene, by_depth=True)
     rays = scene.patch.rays[:, climbed.pixels]
-    half_px = radius_seen_m(climbed.surface, rays) / float(np.median(climbed.surface.meet(rays)[0])) * scene.patch.focal_px
+    half_px = (
+        radius_seen_m(climbed.surface, rays) / float(np.median(climbed.surface.meet(rays)[0])) * scene.patch.focal_px
+    )
     drawn_px = half_width_px(scene.segments, round_=one.shape == "sphere")
     as_drawn = abs(half_px - drawn_px) < max(DRAWN_SHARE * drawn_px, DRAWN_PX)
     sure = float(np.sqrt(fit.covariance.diagonal()[fit.size_place])) < UNSURE * fit.surface.size_m
