@@ -5,9 +5,12 @@ import io
 import logging
 from collections.abc import Callable, Iterator
 from contextlib import contextmanager, redirect_stdout
+from dataclasses import replace
 
 from viser import CameraHandle, ClientHandle, ViserServer
 
+from app.archive import Archive, Exported, Fetched, Listed, Told
+from app.browsing import Asked
 from app.clock import seconds, wall_s
 from app.console_items import CameraMoved, FromPage, Item, PageClosed, PageOpened, Stopped
 from app.deciding.events import (
@@ -82,11 +85,12 @@ class Console:
         """
         decision = Deciding(deciding or DecisionSettings())
         held = Held(frame, name, capture or Capture(name, recorded=frame), notes)
+        settings = replace(settings, dangerous=decision.settings.dangerous)
         self.session = Session(held.size_px, decision=decision, held=held)
         self.told = self.session
         """What pages and robots are told, all of it on disk; read it from any thread."""
         self._name_of, self._settings, self._shown = name_of, settings, held
-        self._heartbeat = Heartbeat(decision.settings.silent_s)
+        self._heartbeat, self._archive = Heartbeat(decision.settings.silent_s), Archive(record, held, self.post)
         self._desk, self._newcomers = Desk(record, settings, self.post), Newcomers(self.post)
         self._host, self._port, self._cloud_points = host, port, cloud_points
         self.pages: dict[int, PageView] = {}
@@ -183,12 +187,16 @@ class Console:
             self._measure_latest()
             self._desk.prepare(self.session)
             self._newcomers.prepare(self.session)
+            browsing = {client_id: page.state.browsing for client_id, page in self.pages.items()}
+            self._archive.look(browsing, self._desk.written, self.session.decision.veiled, seconds())
             only_time = all(isinstance(item, ClockTicked | PageHeard) for item in items)
             with _logged("what happened was not recorded"):
                 await self._tell(not only_time, any(isinstance(item, ClockTicked) for item in items))
-            if self._queue.empty() and not (self._measuring or self._desk.busy or self._newcomers.busy):
+            busy = self._desk.busy or self._newcomers.busy or self._archive.busy
+            if self._queue.empty() and not self._measuring and not busy:
                 self._settled.set()
-        tasks = (ticking, *self._measuring.values(), *self._desk.stop(), *self._newcomers.stop())
+        stopped = (*self._desk.stop(), *self._newcomers.stop(), *self._archive.stop())
+        tasks = (ticking, *self._measuring.values(), *stopped)
         for task in tasks:
             task.cancel()
         await asyncio.gather(*tasks, return_exceptions=True)
@@ -214,6 +222,8 @@ class Console:
                     self.session = step(self.session, Done(client_id, event))
                 elif isinstance(event, DecisionEvent):
                     self.session = step(self.session, event)
+                elif isinstance(event, Asked):
+                    self._archive.ask(client_id, event, self.session.decision.veiled)
                 elif client_id in self.pages:
                     self.pages[client_id].take(event, self.session.visible)
             case Reconstructed(revision):
@@ -221,6 +231,15 @@ class Console:
                 self.session = step(self.session, item)
             case Proposable():
                 self.session = self._desk.taken(self.session, item)
+            case Fetched():
+                self.session = step(self.session, item.opening(seconds(), wall_s()))
+            case Listed(pages=pages):
+                for client_id in pages:
+                    if client_id in self.pages:
+                        self.pages[client_id].told(item)
+            case Told(page=client_id) | Exported(page=client_id):
+                if client_id in self.pages:
+                    self.pages[client_id].told(item)
             case Newer():
                 self.session = self._newcomers.came(self.session, item)
             case NewerPrepared() | NewerReady() | NewerUnusable():
@@ -271,7 +290,7 @@ class Console:
             with _logged("the panels cannot be shown"):
                 self.panels.show(session)
             with _logged("the scene cannot be shown"):
-                self._scene.show(session.reconstruction)
+                self._scene.show(session.reconstruction, session.overriding)
         self.server.flush()
         while self._opened:
             client_id, client = self._opened.popitem()
@@ -313,7 +332,7 @@ class Console:
             lambda event: self._post_from(client.client_id, event),
         )
 
-    def _post_from(self, client_id: int, event: Event | DecisionEvent | PageEvent) -> None:
+    def _post_from(self, client_id: int, event: Event | DecisionEvent | PageEvent | Asked) -> None:
         self.post(FromPage(client_id, event))
 
     async def _page_opened(self, client: ClientHandle) -> None:

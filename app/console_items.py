@@ -4,6 +4,8 @@ from dataclasses import dataclass
 
 from viser import ClientHandle
 
+from app.archive import Exported, Fetched, Listed, Told
+from app.browsing import Asked
 from app.deciding.events import ClockTicked, DecisionEvent, PageHeard, PicturesSent
 from app.desk import Proposable
 from app.events import Event, Reconstructed
@@ -30,7 +32,7 @@ class CameraMoved:
 @dataclass(frozen=True)
 class FromPage:
     client_id: int
-    event: Event | DecisionEvent | PageEvent
+    event: Event | DecisionEvent | PageEvent | Asked
 
 
 @dataclass(frozen=True)
@@ -52,5 +54,9 @@ Item = (
     | NewerPrepared
     | NewerReady
     | NewerUnusable
+    | Listed
+    | Told
+    | Exported
+    | Fetched
     | Stopped
 )

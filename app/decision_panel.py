@@ -103,7 +103,7 @@ class DecisionPanel:
             _set(part, "visible", choosing)
         _set(self._drop, "visible", choosing and case is not None and case.override is not None)
         if case is not None and choosing:
-            options = tuple(tool for tool in case.offer.tools if tool != case.offer.tool) or NOTHING
+            options = case.offer.choices or NOTHING
             if self._tool.options != options:
                 self._tool.options = options
 
@@ -153,7 +153,7 @@ class DecisionPanel:
             self._reject = self._button(
                 "Reject, for that reason", lambda at: RejectPressed(at, self._page, self._shown, self._reason.value), 1
             )
-            self._tool: GuiDropdownHandle[str] = self._gui.add_dropdown("Other tool", NOTHING, order=2)
+            self._tool: GuiDropdownHandle[str] = self._gui.add_dropdown("With the tool", NOTHING, order=2)
             self._override = self._button(
                 "Override, for that reason",
                 lambda at: OverrideTyped(at, self._page, self._shown, self._tool.value, self._reason.value),

@@ -6,7 +6,7 @@ from collections.abc import Callable, Collection
 from dataclasses import dataclass
 
 from app.clock import seconds
-from app.deciding.events import ClockTicked, Offered, PicturesSent, Unmeasured
+from app.deciding.events import ClockTicked, Offered, PicturesSent, Unmeasured, Written
 from app.digest import evidence_digest
 from app.proposing import Evidence, evidence_shown, offered
 from app.record.entries import Entry
@@ -42,6 +42,8 @@ class Desk:
         """Frames by the digest of entries that are not yet on disk: views have another one for every area, and the
         frame that is held may be another one by then."""
         self._preparing: asyncio.Task[None] | None = None
+        self.written = 0
+        """How many times something was put on disk."""
 
     @property
     def busy(self) -> bool:
@@ -83,6 +85,7 @@ class Desk:
             write, self._record, decision.outbox, self._frame_of, lambda: self._digest(evidence)
         ):
             session = step(session, event)
+            self.written += isinstance(event, Written)
         waiting = {entry.digest for entry in session.decision.outbox}
         self._measured_in = {digest: frame for digest, frame in self._measured_in.items() if digest in waiting}
         if session.decision.fault not in (None, decision.fault):

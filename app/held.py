@@ -18,6 +18,8 @@ class Held:
     """The recording that the frame is of."""
     notes: tuple[str, ...] = ()
     """What an operator should know of how it was made."""
+    entry: int | None = None
+    """Of the record, from which it was opened again."""
 
     @property
     def size_px(self) -> tuple[int, int]:

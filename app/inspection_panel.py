@@ -10,9 +10,11 @@ from viser import GuiApi, GuiEvent, GuiTabHandle
 from app.encoded import put
 from app.inspection import line_in, residuals_in
 from app.inspection_text import candidates_html, distance_html, residuals_html
+from app.origins import from_
 from app.page import OVERLAYS, MeasuringChosen, OverlayChosen, PageEvent, PageState, StepChosen
 from app.pictures import Pictures
 from app.stage_chart import STAGE_AXES, STAGE_BANDS, STAGE_SERIES, stage_chart, stage_scales, stage_text
+from rotrecon.line_stages import Line
 from rotrecon.reconstruction import Reconstruction
 
 CHART_HEIGHT_PX = 150
@@ -43,7 +45,9 @@ class InspectionPanel:
             self._image = gui.add_image(
                 np.zeros((2, 2, 3), dtype=np.uint8), format="jpeg", jpeg_quality=JPEG_QUALITY, visible=False
             )
-            overlay = gui.add_dropdown("Over the picture", OVERLAYS, initial_value="nothing")
+            overlay = gui.add_dropdown(
+                "Over the picture", OVERLAYS, initial_value="nothing", hint="Residuals in the 3D view, too"
+            )
             self._scale = gui.add_html("")
             self._candidates = gui.add_html("")
             measuring = gui.add_checkbox("Clicks measure a distance", False)
@@ -70,7 +74,7 @@ class InspectionPanel:
 
     def _show_stage(self, result: Reconstruction | None, section: int, step: int) -> None:
         line = None if result is None else line_in(result, section)
-        self._text.content = f'<div class="rr-caption" data-testid="step">{escape(stage_text(line, step))}</div>'
+        self._text.content = step_html(line, step)
         self._chart.visible = line is not None
         self._chart.data = stage_chart(line, step)
         scales = stage_scales(line)
@@ -93,3 +97,9 @@ class InspectionPanel:
                 self._post(event_of(event.target.value))
 
         return chosen
+
+
+def step_html(line: Line | None, step: int) -> str:
+    """One step of the segmentation in words."""
+    text, origin = escape(stage_text(line, step)), from_("steps", "mean_sigma")
+    return f'<div class="rr-caption" data-testid="step" {origin}>{text}</div>'

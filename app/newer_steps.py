@@ -78,25 +78,30 @@ def with_newer(session: Session, event: NewerEvent) -> Session:
 
 
 def _holding(session: Session, newer: Newer, event: NewerReady) -> Session:
-    """The session on another frame: nothing proposed, nothing measured, and the drawing kept where it fits on it."""
-    size_px = event.held.size_px
-    fits = size_px == session.size_px
+    """The session on the newer frame, with the drawing kept where it fits on it."""
+    fits = event.held.size_px == session.size_px
+    waiting = session.newer if session.newer is not newer else None
+    objects = tuple(_kept(drawn, fits) for drawn in session.objects)
+    vertices_px = session.vertices_px if fits else ()
+    session = replace(session, newer=waiting, objects=objects, vertices_px=vertices_px)
+    return on_frame(session, event.held, FrameOpened(event.at, newer.facts, event.wall_s))
+
+
+def on_frame(session: Session, held: Held, opened: FrameOpened) -> Session:
+    """The session on another frame: nothing proposed, nothing measured, nothing that can be undone."""
     return replace(
         session,
-        held=event.held,
-        newer=session.newer if session.newer is not newer else None,
+        held=held,
         taking=None,
-        size_px=size_px,
-        objects=tuple(_kept(drawn, fits) for drawn in session.objects),
+        size_px=held.size_px,
         preview=None,
         drag="none" if session.drag == "none" else "cancelled",
-        vertices_px=session.vertices_px if fits else (),
         past=(),
         future=(),
         revision=session.revision + 1,
         measured=None,
         notice=None,
-        decision=decide(session.decision, FrameOpened(event.at, newer.facts, event.wall_s)),
+        decision=decide(session.decision, opened),
     )
 
 

@@ -18,6 +18,7 @@ from app.charts import (
 )
 from app.encoded import put
 from app.events import Event, SectionsRestored, SectionToggled
+from app.origins import from_
 from app.page import LAYERS, DarkChosen, LayerChosen, OpacityChosen, PageEvent, PageState, SectionChosen
 from app.panels import Panels
 from app.pictures import Pictures
@@ -48,7 +49,7 @@ class PagePanels:
     def hold(self, pictures: Pictures) -> None:
         """The pictures of another frame."""
         self._pictures, self._television_of, self._crop_of = pictures, None, None
-        self._depth_bar.content = _depth_bar_html(pictures)
+        self._depth_bar.content = depth_bar(pictures.depth_range_m)
 
     def show(
         self, result: Reconstruction | None, page: PageState, section: int, excluded: frozenset[int], moving: bool
@@ -86,11 +87,7 @@ class PagePanels:
             part.visible = count > 0
         self._restore.visible = bool(excluded)
         self._exclude.label = "Put this section back" if section in excluded else "Exclude this section"
-        text, line = escape(section_text(result, section)), escape(line_text(result, section))
-        self._plane.content = (
-            f'<div class="rr-caption" data-testid="section">{text}</div>{section_svg(result, section)}'
-            f'<div class="rr-caption" data-testid="line">{line}</div>'
-        )
+        self._plane.content = section_html(result, section)
 
     def _add_sections(self) -> None:
         chart = radius_chart(None, 0)
@@ -116,7 +113,7 @@ class PagePanels:
     def _add_picture(self) -> None:
         opacity = self._gui.add_slider("Depth, %", 0, 100, 5, 0)
         opacity.on_update(self._choosing(lambda percent: OpacityChosen(float(percent) / 100)))
-        self._depth_bar = self._gui.add_html(_depth_bar_html(self._pictures))
+        self._depth_bar = self._gui.add_html(depth_bar(self._pictures.depth_range_m))
         layer = self._gui.add_dropdown("Frame shows", LAYERS, initial_value="segmentation")
         layer.on_update(self._choosing(LayerChosen))
         self._television = self._gui.add_image(
@@ -144,8 +141,18 @@ class PagePanels:
         return chosen
 
 
-def _depth_bar_html(pictures: Pictures) -> str:
-    """The colours of the depth map, with the depths at their ends."""
-    near_m, far_m = pictures.depth_range_m
-    ends = f"<span>{1000 * near_m:.0f} mm</span><span>{1000 * far_m:.0f} mm</span>"
-    return f'<div class="rr-caption"><div class="rr-bar"></div><div class="rr-ends">{ends}</div></div>'
+def section_html(result: Reconstruction | None, section: int) -> str:
+    """One section in words and in its own plane, and what was done on the line of pixels that it was made of."""
+    text, line = escape(section_text(result, section)), escape(line_text(result, section))
+    return (
+        f'<div class="rr-caption" data-testid="section" {from_("section_radius", "section_rms")}>{text}</div>'
+        f"{section_svg(result, section)}"
+        f'<div class="rr-caption" data-testid="line" {from_("steps", "mean_sigma")}>{line}</div>'
+    )
+
+
+def depth_bar(range_m: tuple[float, float]) -> str:
+    """The colours of the depth map, and which depths are at their two ends."""
+    ends = "".join(f"<span>{1000 * end_m:.0f} mm</span>" for end_m in range_m)
+    origin = from_("depth_range")
+    return f'<div class="rr-caption" {origin}><div class="rr-bar"></div><div class="rr-ends">{ends}</div></div>'

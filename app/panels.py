@@ -33,7 +33,7 @@ from app.tool_panel import ToolPanel
 from rotrecon.primitives import KINDS
 
 PANEL_WIDTH_PX = 390
-TABS = ("Decision", "Sections", "Stages", "Tool", "Picture", "Why", "Buttons", "Help")
+TABS = ("Decision", "Sections", "Stages", "Tool", "Picture", "Why", "History", "Buttons", "Help")
 AUTO = "auto"
 KNOWN = "What is known"
 DIRECTIONS = {name: DirectionChosen(direction) for direction, name in DIRECTION_NAMES.items()}
@@ -84,7 +84,9 @@ class Panels:
         self._add_buttons("View", VIEW)
         self._add_keys()
         panel = self._gui.add_panel()
-        self.decision, self.sections, self.stages, tool, self.picture, why, draw, keys = map(panel.add_tab, TABS)
+        self.decision, self.sections, self.stages, tool, self.picture, why, self.history, draw, keys = map(
+            panel.add_tab, TABS
+        )
         with draw:
             self._add_controls()
         with tool:

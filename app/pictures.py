@@ -26,6 +26,7 @@ from rotrecon.overlay import (
 )
 from rotrecon.reconstruction import Reconstruction
 from rotrecon.residuals import with_residuals
+from rotrecon.tool_table import Tool
 
 STAGES: dict[LayerName, Stage] = {"close pixels": "close", "accepted pixels": "accepted", "segmentation": "object"}
 """The layers that are figure 3 a, b and c of the paper."""
@@ -80,9 +81,10 @@ class Pictures:
         section: int,
         overlay: OverlayName,
         ends_px: tuple[Pixel, ...],
+        tool: Tool | None,
     ) -> Layer:
         """All that is drawn over it, as it is sent."""
-        image = self.camera_view(result, opacity, section, overlay)
+        image = self.camera_view(result, opacity, section, overlay, tool)
         return as_layer(self.with_ends(image, ends_px) if ends_px else image, self.with_depth(opacity))
 
     def _sent_television(self, result: Reconstruction | None, layer: LayerName) -> Encoded:
@@ -93,13 +95,18 @@ class Pictures:
         return None if image is None else as_jpeg(image, STEP_QUALITY)
 
     def camera_view(
-        self, result: Reconstruction | None, opacity: float, section: int, overlay: OverlayName = "nothing"
+        self,
+        result: Reconstruction | None,
+        opacity: float,
+        section: int,
+        overlay: OverlayName = "nothing",
+        tool: Tool | None = None,
     ) -> Bytes:
         """The picture that is drawn on: depth blended in, the solid's outline, a section lit, and what is over it."""
         image = self.with_depth(opacity)
         if result is None:
             return image
-        image = _with_overlay(image, result, overlay)
+        image = _with_overlay(image, result, overlay, tool)
         return _with_section(with_outlines(image, outlines(result)), result, section)
 
     def with_ends(self, image: Bytes, ends_px: tuple[Pixel, ...]) -> Bytes:
@@ -163,10 +170,10 @@ def _with_section(image: Bytes, result: Reconstruction, section: int) -> Bytes:
     return lit
 
 
-def _with_overlay(image: Bytes, result: Reconstruction, overlay: OverlayName) -> Bytes:
+def _with_overlay(image: Bytes, result: Reconstruction, overlay: OverlayName, tool: Tool | None) -> Bytes:
     """The picture with the tool at its place, or with the residuals in colours."""
     if overlay == "tool":
-        grasp = grasp_in(result)
+        grasp = grasp_in(result, tool)
         return image if grasp is None else with_grasp(image, grasp, result.frame)
     residuals = residuals_in(result) if overlay == "residuals" else None
     return image if residuals is None else with_residuals(image, residuals)

@@ -16,6 +16,8 @@ from rotrecon.frame import Frame
 from rotrecon.mesh import as_mesh
 from rotrecon.primitives import Primitive
 from rotrecon.reconstruction import Reconstruction
+from rotrecon.residuals import Residuals
+from rotrecon.tool_table import Tool
 from rotrecon.tools import NoTool, ToolProposal
 
 OBJECT_COLOR, SOLID_COLOR, AXIS_COLOR, TOOL_COLOR = (220, 40, 40), (86, 180, 233), (0, 200, 255), (240, 228, 66)
@@ -31,6 +33,7 @@ class SceneView:
     def __init__(self, server: ViserServer, frame: Frame, picture: Bytes, cloud_points: int, post: Post) -> None:
         self._scene, self._post, self._cloud_points = server.scene, post, cloud_points
         self._shown: Reconstruction | None = None
+        self._tool: Tool | None = None
         self._limits: list[LineSegmentsHandle] = []
         self._scene.add_frame("/world", show_axes=False)
         self._envelope = EnvelopeView(self._scene)
@@ -64,8 +67,14 @@ class SceneView:
         )
         self._envelope.hold(frame, self._point_size_m())
 
-    def show(self, result: Reconstruction | None) -> None:
-        """Show what was segmented, and the solid with its axis, contact point and approach, if there is one."""
+    def show(self, result: Reconstruction | None, tool: Tool | None = None) -> None:
+        """Show what was segmented, and the solid with its axis, contact point and approach, if there is one.
+
+        A `tool` stands at its place, else the one that is proposed or may fit.
+        """
+        if self._tool != tool or self._shown is not result:
+            self._tool = tool
+            self._envelope.show(result, tool)
         if result is self._shown:
             return
         self._shown = result
@@ -77,7 +86,6 @@ class SceneView:
         solid = None if result is None else result.solid
         self._show_solid(solid)
         self._show_tool(None if result is None else result.tool, solid)
-        self._envelope.show(result)
 
     def light_section(self, client: ClientHandle, result: Reconstruction | None, section: int) -> None:
         """Light one section on one page."""
@@ -93,11 +101,31 @@ class SceneView:
             visible=sections is not None,
         )
 
-    def hide_section(self, client: ClientHandle) -> None:
-        """Take the lit section away, as it would hide the picture in the camera view."""
-        node = client.scene.get_handle_by_name("/section")
-        if node is not None:
-            node.visible = False
+    def color_residuals(self, client: ClientHandle, residuals: Residuals | None) -> None:
+        """Show on one page how far the object's points lie off the solid, in place of those that all pages see."""
+        hidden = client.scene.get_handle_by_name("/world/object")
+        if residuals is not None and hidden is None:
+            client.scene.add_frame("/world/object", show_axes=False, visible=False)
+        elif residuals is None and hidden is not None:
+            hidden.remove()
+        chosen = slice(0) if residuals is None else slice(None, None, -(-len(residuals.pixel) // OBJECT_POINTS))
+        points_m = np.zeros((1, 3)) if residuals is None else self._in_base(residuals.pixel[chosen])
+        client.scene.add_point_cloud(
+            "/residuals",
+            points_m,
+            OBJECT_COLOR if residuals is None else residuals.colors[chosen],
+            point_size=1.5 * self._point_size_m() / self._stride,
+            precision="float32",
+            point_shading="flat",
+            visible=residuals is not None,
+        )
+
+    def hide_own(self, client: ClientHandle) -> None:
+        """Take away what one page has of its own, as it would hide the picture in the camera view."""
+        for name in ("/section", "/residuals"):
+            node = client.scene.get_handle_by_name(name)
+            if node is not None:
+                node.visible = False
 
     def look(self, client: ClientHandle, pose: tuple[Floats, ...] | None) -> None:
         """Stand where the page stood last (up, position, look-at), or beside the sensor and above it."""

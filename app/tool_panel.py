@@ -9,6 +9,8 @@ from viser import GuiApi
 from app.events import ContactPlaced
 from app.session import Session
 from app.tool_text import NOTHING, next_view_html, place_html, tools_html
+from rotrecon.contact import limits_of
+from rotrecon.reconstruction import Reconstruction
 
 ANGLE_STEP_DEG, ALONG_STEP_MM = 5, 5
 MOST_ANGLE_DEG = 90
@@ -42,11 +44,25 @@ class ToolPanel:
         """Bring it up to date, sending only what has changed."""
         contact, result = session.shown.contact, session.reconstruction
         self._placed = (degrees(contact.angle_rad), 1000 * contact.along_m)
-        texts = ((self._tools, tools_html), (self._place, place_html), (self._next, next_view_html))
+        texts = (
+            (self._tools, tools_html(result)),
+            (self._place, place_html(result, session.overriding)),
+            (self._next, next_view_html(result)),
+        )
+        for name, limit in zip(("min", "max"), limits_mm(result), strict=True):
+            if getattr(self._along, name) != limit:
+                setattr(self._along, name, limit)
         for handle, value in zip((self._angle, self._along), self._placed, strict=True):
             if abs(handle.value - value) > 1e-6:
                 handle.value = round(value, 3)
-        for handle, text in texts:
-            content = text(result)
+        for handle, content in texts:
             if handle.content != content:
                 handle.content = content
+
+
+def limits_mm(result: Reconstruction | None) -> tuple[float | None, float | None]:
+    """How far along the axis a contact may be, to either side of the middle; no limits before it is measured."""
+    if result is None or result.solid is None:
+        return None, None
+    most_mm = 1000 * limits_of(result.solid).along_m
+    return -most_mm, most_mm

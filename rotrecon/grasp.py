@@ -73,7 +73,7 @@ def grasp_of(result: Reconstruction, tool: Tool, place: Place | None = None) -> 
     more_m = diameter_mm(result.readings[0])[1] / 1000 - 2 * float(solid.radius_at(0.0))
     diameter_m = 2 * float(solid.radius_at(place.along_m)) + max(more_m, 0.0)
     envelope = envelope_of(tool, solid, contact, diameter_m)
-    (clearance,) = clearances(result.readings, contact.point_m, fit.concave, (tool,))
+    (clearance,) = clearances(result.readings, contact.point_m, fit.concave, (tool,), result.settings.dangerous)
     at_contact, on_way = _hits(result, fit, envelope)
     return Grasp(tool, place, contact, envelope, clearance, at_contact, on_way, _unreachable(result, contact, envelope))
 
@@ -92,7 +92,7 @@ def clearances_of(result: Reconstruction) -> tuple[Clearance, ...]:
     if not isinstance(fit, Fit) or solid is None or not result.readings:
         return ()
     contact = contact_on(solid, result.frame.T_base_camera[:3, 3], result.drawing.contact)
-    return clearances(result.readings, contact.point_m, fit.concave, result.settings.tools)
+    return clearances(result.readings, contact.point_m, fit.concave, result.settings.tools, result.settings.dangerous)
 
 
 def strange(result: Reconstruction, fit: Fit, among: Bools | None = None) -> Bools:

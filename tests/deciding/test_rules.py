@@ -181,6 +181,31 @@ def test_an_override_takes_a_typed_reason_and_the_same_two_actions(table: Table)
     assert table.written[-1].payload["override"] == WHY
 
 
+def test_a_tool_with_something_in_its_way_is_armed_only_by_an_override_that_says_so() -> None:
+    hit = "At the object it would hit 3 points of the cloud."
+    table = Table(offer=offer("digest 0", in_the_way={"cutter": (hit,)}))
+    table.arm()
+    assert table.state == "proposed"
+    assert table.said_to(ANN) == hit
+    assert obstacles(table.deciding)[-1].startswith("Turn the approach or move the contact")
+    table.do(OverrideTyped(table.now, ANN, table.number, "cutter", "   "))
+    table.arm()
+    assert table.state == "proposed", "without a reason it is none"
+    table.do(OverrideTyped(table.now, ANN, table.number, "cutter", "that is a loose cable, it gives way"))
+    table.arm()
+    table.hold()
+    assert table.kinds[-1] == "overridden"
+    assert table.written[-1].payload["in_the_way"] == hit
+    assert table.written[-1].payload["tool"] == "cutter"
+
+
+def test_what_is_in_the_way_of_another_tool_blocks_nothing() -> None:
+    table = Table(offer=offer("digest 0", in_the_way={"clipper": ("It would hit something.",)}))
+    assert obstacles(table.deciding) == ()
+    assert table.deciding.case is not None
+    assert table.deciding.case.offer.choices == ("clipper", "grip")
+
+
 def test_choosing_another_tool_disarms(table: Table) -> None:
     table.arm()
     table.do(OverrideTyped(table.now, ANN, table.number, "clipper", WHY))
