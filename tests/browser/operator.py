@@ -62,7 +62,7 @@ class Operator:
         (self.client_id,) = set(console.pages) - known
         self._dismiss_software_notice()
         expect(page.get_by_test_id("hint")).to_be_visible()
-        self.until(self.picture_in_place, "the picture is where it belongs")
+        self.until(self._picture_in_place, "the picture is where it belongs")
         if takes_control and console.session.decision.control.holder is None:
             self.page.get_by_role("button", name="Take control").click()
             self.until(lambda: self.in_control, "this page is in control")
@@ -146,7 +146,7 @@ class Operator:
         self.page.locator(".mantine-Notification-closeButton").first.click()
         notice.wait_for(state="detached")
 
-    def picture_in_place(self) -> bool:
+    def _picture_in_place(self) -> bool:
         """Whether the picture's four corners are where they should be, with the backdrop just outside of them."""
         self.console.wait_until_idle(TIMEOUT_S)
         screen = imageio.imread(BytesIO(self.page.screenshot()))[..., :3].astype(int)

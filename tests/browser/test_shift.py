@@ -245,7 +245,7 @@ def opens_it_again_and_goes_away(late: Operator, shift: Shift) -> None:
     assert console.frame is not held
     assert console.session.shown.contact.angle_rad == pytest.approx(np.deg2rad(10)), "as it was confirmed"
     expect(page.get_by_test_id("decision")).to_contain_text(f"Frame of entry {number} of the record")
-    late.until(late.picture_in_place, "its picture is where it belongs")
+    late.until(late._picture_in_place, "its picture is where it belongs")
     tab(late, "Decision")
     arm(late)
     before = late.client_id
