@@ -5,18 +5,21 @@ import io
 import logging
 from collections.abc import Callable, Iterator
 from contextlib import contextmanager, redirect_stdout
+from dataclasses import replace
 
 from viser import CameraHandle, ClientHandle, ViserServer
 
 from app.adjustable import Chosen
+from app.archive import Archive, Exported, Fetched, Listed, Told
+from app.browsing import Asked
 from app.clock import seconds, wall_s
 from app.console_items import CameraMoved, FromPage, Item, PageClosed, PageOpened, Stopped
 from app.deciding.events import (
     ClockTicked,
     DecisionEvent,
-    FrameArrived,
     FrameOpened,
     PageCame,
+    PageHeard,
     PageWent,
     PicturesSent,
 )
@@ -25,9 +28,13 @@ from app.deciding.states import Deciding
 from app.decision_text import face
 from app.desk import Desk, Proposable
 from app.events import Event, Reconstructed
-from app.last_session import SessionFile
+from app.heartbeat import Heartbeat
+from app.held import Held, Newer
+from app.last_session import LastSessions
 from app.measurements import Measurements
-from app.newer_frames import facts_of, newer_facts
+from app.newcomers import Newcomers
+from app.newer_frames import facts_of
+from app.newer_steps import NewerPrepared, NewerReady, NewerUnusable
 from app.page import PageEvent
 from app.page_view import BRAND_COLOR, PageView
 from app.panels import Panels
@@ -47,7 +54,7 @@ log = logging.getLogger(__name__)
 
 
 class Console:
-    """One frame, shown to any number of pages.
+    """One frame, shown to any number of pages, until the one in control takes a newer one.
 
     Everything that happens is put on one queue, in viser's event loop; there it steps the session, starts a
     measurement in a thread, and is shown. `idle` tells when nothing of that is left to do.
@@ -68,7 +75,7 @@ class Console:
         deciding: DecisionSettings | None = None,
         name_of: Callable[[int], str | None] = lambda client_id: SOMEBODY,
         capture: Capture | None = None,
-        last: SessionFile | None = None,
+        last: LastSessions | None = None,
         tour: bool = False,
     ) -> None:
         """Without a `record` nothing can be decided; `name_of` says who is behind one of viser's clients.
@@ -76,28 +83,39 @@ class Console:
         `open_viser` starts the server that its pages are on; without, one listens on `host` and `port` itself. What was
         drawn and set in the `last` session on this frame is there again. A `tour` leads every page that is opened.
         """
-        chosen = Chosen(settings, deciding or DecisionSettings())
+        deciding = deciding or DecisionSettings()
+        chosen = Chosen(replace(settings, dangerous=deciding.dangerous), deciding)
+        held = Held(frame, name, capture or Capture(name, recorded=frame), notes)
         self.session = Session(
-            (frame.camera.width, frame.camera.height),
-            decision=Deciding(chosen.deciding),
-            settings=settings,
-            defaults=chosen,
+            held.size_px, decision=Deciding(deciding), held=held, settings=chosen.measuring, defaults=chosen
         )
         self._last, self._tour = last, tour
         if last is not None:
             self.session = last.resumed(self.session)
-            notes += () if last.problem is None else (last.problem,)
+            told = () if last.problem is None else (last.problem,)
+            self.session = replace(self.session, held=replace(held, notes=(*notes, *told)))
         self.told = self.session
         """What pages and robots are told, all of it on disk; read it from any thread."""
-        self._name_of = name_of
-        self._desk = Desk(record, frame, self.post)
-        self._measurements = Measurements(frame, capture, self.post)
-        self.frame, self.name, self.notes = frame, name, notes
+        self._name_of, self._shown = name_of, self.held
+        self._heartbeat, self._archive = Heartbeat(deciding.silent_s), Archive(record, held, self.post)
+        self._desk, self._newcomers = Desk(record, self.post), Newcomers(self.post)
+        self._measurements = Measurements(self.post)
         self._host, self._port, self._cloud_points = host, port, cloud_points
         self.pages: dict[int, PageView] = {}
         self._open_viser = open_viser or self._open_server
         self._opened: dict[int, ClientHandle] = {}
         self._listeners: dict[object, Callable[[], object]] = {}
+
+    @property
+    def held(self) -> Held:
+        """What everybody is told that is drawn on and measured in."""
+        assert self.told.held is not None
+        return self.told.held
+
+    @property
+    def frame(self) -> Frame:
+        """The frame of that."""
+        return self.held.frame
 
     @property
     def address(self) -> str:
@@ -116,7 +134,7 @@ class Console:
         self.server.gui.configure_theme(
             dark_mode=True, show_logo=False, show_share_button=False, brand_color=BRAND_COLOR
         )
-        self.panels = Panels(self.server, self.name, self.notes, self._post_from)
+        self.panels = Panels(self.server, self.held, self._post_from)
         self._scene = SceneView(
             self.server, self.frame, self._pictures.television(None, "picture"), self._cloud_points, self._post_from
         )
@@ -137,11 +155,9 @@ class Console:
         with redirect_stdout(io.StringIO()):
             self.server.stop()
 
-    def newer(self, capture: Capture) -> None:
-        """Watch over a capture that came after the frame that is held; of any thread."""
-        area = self.told.shown.area
-        event = FrameArrived(seconds(), *newer_facts(self.frame, capture, area))
-        self._loop.call_soon_threadsafe(self.post, event)
+    def newer(self, newer: Newer) -> None:
+        """Announce a recording that came after the frame that is held; of any thread."""
+        self._loop.call_soon_threadsafe(self.post, newer)
 
     def subscribe(self, changed: Callable[[], object]) -> Callable[[], object]:
         """Call `changed`, quickly done, after the session may have changed; returns what ends that. Of any thread."""
@@ -174,15 +190,21 @@ class Console:
             for item in items:
                 with _logged("what happened was not taken in"):
                     self._take(item)
+            self.session = self._newcomers.compared(self.session)
             self._measurements.start(self.session)
             self._desk.prepare(self.session)
-            only_time = all(isinstance(item, ClockTicked) for item in items)
+            self._newcomers.prepare(self.session)
+            browsing = {client_id: page.state.browsing for client_id, page in self.pages.items()}
+            self._archive.look(browsing, self._desk.written, self.session.decision.veiled, seconds())
+            only_time = all(isinstance(item, ClockTicked | PageHeard) for item in items)
             with _logged("what happened was not recorded"):
                 await self._tell(not only_time, any(isinstance(item, ClockTicked) for item in items))
-            if self._queue.empty() and not self._measurements.busy and not self._desk.busy:
+            beside = (self._measurements, self._desk, self._newcomers, self._archive)
+            if self._queue.empty() and not any(one.busy for one in beside):
                 self._settled.set()
         ticking.cancel()
-        tasks = (ticking, *self._measurements.stop(), *self._desk.stop())
+        beside = (self._measurements, self._desk, self._newcomers, self._archive)
+        tasks = (ticking, *(task for one in beside for task in one.stop()))
         await asyncio.gather(*tasks, return_exceptions=True)
 
     async def _tell(self, happened: bool, ticked: bool) -> None:
@@ -196,16 +218,18 @@ class Console:
             with _logged("a listener was not told"):
                 changed()
         await asyncio.to_thread(self._show)
-        self.server.flush()
         self._desk.shown(self.told, self.pages)
 
     def _take(self, item: Item) -> None:
         match item:
             case FromPage(client_id, event):
+                self.session = step(self.session, PageHeard(seconds(), client_id))
                 if isinstance(event, Event):
                     self.session = step(self.session, Done(client_id, event))
                 elif isinstance(event, DecisionEvent):
                     self.session = step(self.session, event)
+                elif isinstance(event, Asked):
+                    self._archive.ask(client_id, event, self.session.decision.veiled)
                 elif client_id in self.pages:
                     self.pages[client_id].take(event, self.session.visible)
             case Reconstructed(revision):
@@ -213,7 +237,23 @@ class Console:
                 self.session = step(self.session, item)
             case Proposable():
                 self.session = self._desk.taken(self.session, item)
-            case ClockTicked() | PicturesSent() | FrameArrived():
+            case Fetched():
+                self.session = step(self.session, item.opening(seconds(), wall_s()))
+            case Listed(pages=pages):
+                for client_id in pages:
+                    if client_id in self.pages:
+                        self.pages[client_id].told(item)
+            case Told(page=client_id) | Exported(page=client_id):
+                if client_id in self.pages:
+                    self.pages[client_id].told(item)
+            case Newer():
+                self.session = self._newcomers.came(self.session, item)
+            case NewerPrepared() | NewerReady() | NewerUnusable():
+                self.session = self._newcomers.taken_in(self.session, item)
+            case ClockTicked(at):
+                self.session = step(self.session, item)
+                self._heartbeat.ask(self.session.decision.control.holder, at, self.server.get_clients())
+            case PicturesSent() | PageHeard():
                 self.session = step(self.session, item)
             case PageOpened(client):
                 self._opened[client.client_id] = client
@@ -229,19 +269,35 @@ class Console:
     def _show(self) -> None:
         """Show the session on every page; runs in a thread, and only one at a time."""
         session = self.told.visible
-        with _logged("the panels cannot be shown"):
-            self.panels.show(session)
-        with _logged("the scene cannot be shown"):
-            self._scene.show(session.reconstruction)
+        if self.held is not self._shown:
+            with _logged("the newer frame cannot be shown"):
+                self._hold(self.held)
+        with self.server.atomic():
+            with _logged("the panels cannot be shown"):
+                self.panels.show(session)
+            with _logged("the scene cannot be shown"):
+                self._scene.show(session.reconstruction, session.overriding)
+        self.server.flush()
         while self._opened:
             client_id, client = self._opened.popitem()
             with self._unless_gone(client_id):
                 self.pages[client_id] = self._new_page(client)
         for client_id, page in list(self.pages.items()):
             with self._unless_gone(client_id):
-                page.show(session)
+                with page.client.atomic():
+                    page.show(session)
+                page.client.flush()
         if self._last is not None:
             self._last.keep(self.told)
+
+    def _hold(self, held: Held) -> None:
+        """Put another frame in the place of the one that is shown."""
+        self._shown, self._pictures = held, Pictures(held.frame)
+        self.panels.hold(held)
+        self._scene.hold(held.frame, self._pictures.television(None, "picture"))
+        for client_id, page in list(self.pages.items()):
+            with self._unless_gone(client_id):
+                page.hold(self._pictures)
 
     @contextmanager
     def _unless_gone(self, client_id: int) -> Iterator[None]:
@@ -265,7 +321,7 @@ class Console:
             self._tour,
         )
 
-    def _post_from(self, client_id: int, event: Event | DecisionEvent | PageEvent) -> None:
+    def _post_from(self, client_id: int, event: Event | DecisionEvent | PageEvent | Asked) -> None:
         self.post(FromPage(client_id, event))
 
     async def _page_opened(self, client: ClientHandle) -> None:
@@ -275,7 +331,9 @@ class Console:
         self.post(PageClosed(client.client_id))
 
     async def _camera_moved(self, camera: CameraHandle) -> None:
-        page = self.pages.get(camera.client.client_id)
+        client_id = camera.client.client_id
+        self.post(PageHeard(seconds(), client_id))
+        page = self.pages.get(client_id)
         if page is not None and page.state.view == "camera":
             self.post(CameraMoved())
 

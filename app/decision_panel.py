@@ -63,7 +63,7 @@ class DecisionPanel:
         holds = deciding.control.holder == self._page
         recorded = deciding.watched is not None and deciding.watched.held.source == "recorded"
         stale = bool(problems(deciding.watched, deciding.settings, deciding.now))
-        set_to(self._again, "visible", holds and recorded and stale)
+        set_to(self._again, "visible", holds and recorded and stale and session.newer is None)
         for part in (self._class, self._name):
             set_to(part, "visible", holds and case is not None and deciding.veiled)
         self._show_two(deciding, case if holds and not deciding.veiled else None)
@@ -104,7 +104,7 @@ class DecisionPanel:
             set_to(part, "visible", choosing)
         set_to(self._drop, "visible", choosing and case is not None and case.override is not None)
         if case is not None and choosing:
-            options = tuple(tool for tool in case.offer.tools if tool != case.offer.tool) or NOTHING
+            options = case.offer.choices or NOTHING
             if self._tool.options != options:
                 self._tool.options = options
 
@@ -154,7 +154,7 @@ class DecisionPanel:
             self._reject = self._button(
                 "Reject, for that reason", lambda at: RejectPressed(at, self._page, self._shown, self._reason.value), 1
             )
-            self._tool: GuiDropdownHandle[str] = self._gui.add_dropdown("Other tool", NOTHING, order=2)
+            self._tool: GuiDropdownHandle[str] = self._gui.add_dropdown("With the tool", NOTHING, order=2)
             self._override = self._button(
                 "Override, for that reason",
                 lambda at: OverrideTyped(at, self._page, self._shown, self._tool.value, self._reason.value),

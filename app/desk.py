@@ -6,7 +6,7 @@ from collections.abc import Callable, Collection
 from dataclasses import dataclass
 
 from app.clock import seconds
-from app.deciding.events import ClockTicked, Offered, PicturesSent, Unmeasured
+from app.deciding.events import ClockTicked, Offered, PicturesSent, Unmeasured, Written
 from app.digest import evidence_digest
 from app.proposing import Evidence, evidence_shown, offered
 from app.record.entries import Entry
@@ -35,12 +35,15 @@ Posted = Proposable | ClockTicked | PicturesSent
 class Desk:
     """Everything but `write` runs in the console's event loop."""
 
-    def __init__(self, record: Record | None, frame: Frame, post: Callable[[Posted], None]) -> None:
-        self._record, self._frame, self._post = record, frame, post
+    def __init__(self, record: Record | None, post: Callable[[Posted], None]) -> None:
+        self._record, self._post = record, post
         self._evidence: Evidence | None = None
         self._measured_in: dict[str | None, Frame] = {}
-        """Frames by the digest of entries that are not yet on disk: views have another one for every area."""
+        """Frames by the digest of entries that are not yet on disk: views have another one for every area, and the
+        frame that is held may be another one by then."""
         self._preparing: asyncio.Task[None] | None = None
+        self.written = 0
+        """How many times something was put on disk."""
 
     @property
     def busy(self) -> bool:
@@ -82,6 +85,7 @@ class Desk:
             write, self._record, decision.outbox, self._frame_of, lambda: _digest(evidence, settings)
         ):
             session = step(session, event)
+            self.written += isinstance(event, Written)
         waiting = {entry.digest for entry in session.decision.outbox}
         self._measured_in = {digest: frame for digest, frame in self._measured_in.items() if digest in waiting}
         if session.decision.fault not in (None, decision.fault):
@@ -102,7 +106,7 @@ class Desk:
         return (self._preparing,)
 
     def _frame_of(self, entry: Entry) -> Frame:
-        return self._measured_in.get(entry.digest, self._frame)
+        return self._measured_in[entry.digest]
 
     async def _prepare(self, evidence: Evidence, who: str) -> None:
         event: Offered | Unmeasured | None = None

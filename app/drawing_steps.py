@@ -9,6 +9,7 @@ from app.events import (
     DiameterTyped,
     DirectionChosen,
     DrawingEvent,
+    FrameTaken,
     HandleMoved,
     KindChosen,
     PageLeft,
@@ -24,6 +25,7 @@ from app.events import (
     VertexTakenBack,
 )
 from app.knowledge import with_knowledge
+from app.newer_steps import taken
 from app.object_drawing import (
     PARTS,
     SMALLEST_PX,
@@ -79,6 +81,8 @@ def drawn_on(session: Session, event: DrawingEvent) -> Session:
             return _section_toggled(session, event.section)
         case SectionsRestored():
             return _changed(session, replace(session.objects[session.selected], excluded_sections=frozenset()))
+        case FrameTaken():
+            return taken(session)
         case Reconstructed():
             return _reconstructed(session, event)
 

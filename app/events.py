@@ -151,6 +151,11 @@ class UnitChosen:
 
 
 @dataclass(frozen=True)
+class FrameTaken:
+    """The newer frame that waits is to be held from now on."""
+
+
+@dataclass(frozen=True)
 class Reconstructed:
     """A measurement has come back."""
 
@@ -178,6 +183,7 @@ DrawingEvent = (
     | ContactPlaced
     | SectionToggled
     | SectionsRestored
+    | FrameTaken
     | Reconstructed
 )
 """What makes another drawing, or another result of it."""

@@ -7,13 +7,16 @@ from typing import Any
 import numpy as np
 from viser import GuiApi, GuiEvent, GuiTabHandle
 
+from app.encoded import put
 from app.inspection import line_in, residuals_in
 from app.inspection_text import candidates_html, distance_html, residuals_html
+from app.origins import from_
 from app.page import OVERLAYS, MeasuringChosen, OverlayChosen, PageEvent, PageState, StepChosen
 from app.pictures import Pictures
 from app.showing import set_to
 from app.stage_chart import STAGE_AXES, STAGE_BANDS, STAGE_SERIES, stage_chart, stage_scales, stage_text
 from app.units import MM_PER, Unit, in_unit, labels_in, scales_in
+from rotrecon.line_stages import Line
 from rotrecon.reconstruction import Reconstruction
 
 CHART_HEIGHT_PX = 150
@@ -44,7 +47,9 @@ class InspectionPanel:
             self._image = gui.add_image(
                 np.zeros((2, 2, 3), dtype=np.uint8), format="jpeg", jpeg_quality=JPEG_QUALITY, visible=False
             )
-            overlay = gui.add_dropdown("Over the picture", OVERLAYS, initial_value="nothing")
+            overlay = gui.add_dropdown(
+                "Over the picture", OVERLAYS, initial_value="nothing", hint="Residuals in the 3D view, too"
+            )
             self._scale = gui.add_html("")
             self._candidates = gui.add_html("")
             measuring = gui.add_checkbox("Clicks measure a distance", False)
@@ -52,6 +57,10 @@ class InspectionPanel:
         self._step.on_update(self._choosing(lambda number: StepChosen(int(number) - 1)))
         overlay.on_update(self._choosing(OverlayChosen))
         measuring.on_update(self._choosing(lambda value: MeasuringChosen(bool(value))))
+
+    def hold(self, pictures: Pictures) -> None:
+        """The pictures of another frame."""
+        self._pictures, self._stage_of, self._rest_of = pictures, None, None
 
     def show(self, result: Reconstruction | None, page: PageState, section: int, unit: Unit) -> None:
         """Bring it up to date."""
@@ -68,8 +77,7 @@ class InspectionPanel:
 
     def _show_stage(self, result: Reconstruction | None, section: int, step: int, unit: Unit) -> None:
         line = None if result is None else line_in(result, section)
-        text = in_unit(escape(stage_text(line, step)), unit)
-        self._text.content = f'<div class="rr-caption" data-testid="step">{text}</div>'
+        self._text.content = in_unit(step_html(line, step), unit)
         self._chart.visible = line is not None
         place, *depths = stage_chart(line, step)
         self._chart.data = (place, *(depth / MM_PER[unit] for depth in depths))
@@ -81,10 +89,10 @@ class InspectionPanel:
             self._step.max = len(line.stages)
         if self._step.value != step + 1:
             self._step.value = min(step + 1, int(self._step.max))
-        image = None if result is None else self._pictures.step(result, section, step)
+        image = None if result is None else self._pictures.sent_step(result, section, step)
         self._image.visible = image is not None
         if image is not None:
-            self._image.image = image
+            put(self._image, image)
 
     def _choosing(self, event_of: Callable[[Any], PageEvent]) -> Any:
         """A callback that posts the event a value stands for, when the page and not the program has set it."""
@@ -94,3 +102,9 @@ class InspectionPanel:
                 self._post(event_of(event.target.value))
 
         return chosen
+
+
+def step_html(line: Line | None, step: int) -> str:
+    """One step of the segmentation in words."""
+    text, origin = escape(stage_text(line, step)), from_("steps", "mean_sigma")
+    return f'<div class="rr-caption" data-testid="step" {origin}>{text}</div>'

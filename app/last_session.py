@@ -67,52 +67,64 @@ def _check(drawn: ObjectDrawing, size_px: tuple[int, int]) -> None:
         raise ValueError("a drawing is not on the frame")
 
 
-class SessionFile:
-    """The file of one scene's session: a line with the hash of the rest, then JSON. Not for two threads at once."""
+class LastSessions:
+    """The files of sessions: a line with the hash of the rest, then JSON. Not for two threads at once."""
 
-    def __init__(self, folder: Path, frame: Frame) -> None:
-        """In the data folder `folder`; a scene is known by what its frame holds."""
-        self.path = folder / FOLDER / f"{frame_id(frame)}.json"
-        self._kept = Kept()
+    def __init__(self, folder: Path) -> None:
+        """In the data folder `folder`."""
+        self._folder = folder / FOLDER
+        self._kept: tuple[Path | None, Kept] = (None, Kept())
         self.problem: str | None = None
-        """What a person should know of this file, in one sentence."""
+        """What a person should know of these files, in one sentence."""
+
+    def path(self, frame: Frame) -> Path:
+        """The file of the session on a frame, which is known by what it holds."""
+        return self._folder / f"{frame_id(frame)}.json"
 
     def resumed(self, session: Session) -> Session:
         """A session that has just begun, with what was kept; a file that cannot be used is moved aside, and told of."""
+        if session.held is None:
+            return session
+        path = self.path(session.held.frame)
+        self._kept = (path, Kept())
         try:
-            kept = _read(self.path.read_bytes())
+            kept = _read(path.read_bytes())
             session = resumed(session, kept)
         except FileNotFoundError:
             return session
         except OSError as error:
-            self.problem = f"The last session cannot be read ({error.strerror}): {self.path}."
+            self.problem = f"The last session cannot be read ({error.strerror}): {path}."
         except ValueError as error:
-            self.problem = f"The last session of this scene is damaged ({error}), and is left aside in {self._aside()}."
+            self.problem = f"The last session of this scene is damaged ({error}), and is left aside in {_aside(path)}."
         else:
-            self._kept = kept
+            self._kept = (path, kept)
         return session
 
     def keep(self, session: Session) -> None:
         """Put what is new on disk; what the disk refuses is told of, and tried again with the next change."""
-        kept = kept_of(session)
-        if kept == self._kept:
+        if session.held is None:
+            return
+        path, kept = self.path(session.held.frame), kept_of(session)
+        if (path, kept) == self._kept:
             return
         try:
-            self.path.parent.mkdir(parents=True, exist_ok=True)
-            write_whole(self.path, _written(kept))
-            self._kept, self.problem = kept, None
+            self._folder.mkdir(parents=True, exist_ok=True)
+            write_whole(path, _written(kept))
+            self._kept, self.problem = (path, kept), None
         except OSError as error:
-            self.problem = f"This session is not kept ({error.strerror}): {self.path}."
+            self.problem = f"This session is not kept ({error.strerror}): {path}."
             log.warning(self.problem)
 
-    def _aside(self) -> Path:
-        aside = self.path.with_suffix(".damaged")
-        try:
-            self.path.replace(aside)
-            flush_folder(aside.parent)
-        except OSError:
-            return self.path
-        return aside
+
+def _aside(path: Path) -> Path:
+    """Where a file was moved that must not be written over."""
+    aside = path.with_suffix(".damaged")
+    try:
+        path.replace(aside)
+        flush_folder(aside.parent)
+    except OSError:
+        return path
+    return aside
 
 
 def _written(kept: Kept) -> bytes:

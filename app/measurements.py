@@ -4,11 +4,10 @@ import asyncio
 from collections.abc import Callable
 
 from app.events import Reconstructed
+from app.held import Held
 from app.measuring import measure, measure_finely
 from app.session import Session
-from rotrecon.capture import Capture
 from rotrecon.drawing import Drawing
-from rotrecon.frame import Frame
 from rotrecon.settings import Settings
 
 MOST_MEASUREMENTS = 2
@@ -18,10 +17,8 @@ MOST_MEASUREMENTS = 2
 class Measurements:
     """Runs in the console's event loop; what comes of a measurement is posted there."""
 
-    def __init__(self, frame: Frame, capture: Capture | None, post: Callable[[Reconstructed], None]) -> None:
-        """A `capture` of views, of which the frame is the coarse one, is matched again in every area that is drawn."""
-        self._frame, self._post = frame, post
-        self._capture = capture if capture is not None and capture.views else None
+    def __init__(self, post: Callable[[Reconstructed], None]) -> None:
+        self._post = post
         self._running: dict[int, asyncio.Task[None]] = {}
 
     @property
@@ -31,12 +28,11 @@ class Measurements:
 
     def start(self, session: Session) -> None:
         """Measure the drawing as it is now, unless that is done, under way, or has to wait for its turn."""
-        drawing = session.shown.complete
-        if drawing is None or session.up_to_date or session.revision in self._running:
+        drawing, held = session.shown.complete, session.held
+        if drawing is None or held is None or session.up_to_date or session.revision in self._running:
             return
         if len(self._running) < MOST_MEASUREMENTS:
-            finely = self._capture if session.measured_once else None
-            measuring = self._measure(session.revision, drawing, session.settings, finely)
+            measuring = self._measure(session.revision, drawing, session.settings, held, session.measured_once)
             self._running[session.revision] = asyncio.create_task(measuring)
 
     def done(self, revision: int) -> None:
@@ -49,9 +45,10 @@ class Measurements:
             task.cancel()
         return tuple(self._running.values())
 
-    async def _measure(self, revision: int, drawing: Drawing, settings: Settings, finely: Capture | None) -> None:
-        if finely is not None:
-            outcome = await asyncio.to_thread(measure_finely, finely, drawing, settings)
+    async def _measure(self, revision: int, drawing: Drawing, settings: Settings, held: Held, finely: bool) -> None:
+        views = held.finely
+        if views is not None and finely:
+            outcome = await asyncio.to_thread(measure_finely, views, drawing, settings)
         else:
-            outcome = await asyncio.to_thread(measure, self._frame, drawing, settings)
-        self._post(Reconstructed(revision, outcome, coarse=finely is None and self._capture is not None))
+            outcome = await asyncio.to_thread(measure, held.frame, drawing, settings)
+        self._post(Reconstructed(revision, outcome, coarse=views is not None and not finely))

@@ -19,7 +19,9 @@ from app.events import (
     Undone,
     VertexTakenBack,
 )
+from app.held import Held
 from app.knowledge import DIRECTION_NAMES, knowledge_text
+from app.newer_panel import newer_html
 from app.object_drawing import UNKNOWN_MM
 from app.origins import origins_html
 from app.page import PageEvent, SectionStepped, ViewChosen, Zoomed
@@ -33,7 +35,7 @@ from app.units import Unit, from_mm, in_unit, to_mm
 from rotrecon.primitives import KINDS
 
 PANEL_WIDTH_PX = 390
-TABS = ("Decision", "Sections", "Stages", "Tool", "Picture", "Why", "Buttons", "Settings", "Help")
+TABS = ("Decision", "Sections", "Stages", "Tool", "Picture", "Why", "History", "Buttons", "Settings", "Help")
 AUTO = "auto"
 KNOWN = "What is known"
 DIAMETER, DIAMETER_STEP_MM = "Diameter from / to, {}", 0.1
@@ -65,7 +67,7 @@ Post = Callable[[int, Event | PageEvent], None]
 class Panels:
     """Controls and texts that belong to the server, so that all pages show the same."""
 
-    def __init__(self, server: ViserServer, name: str, notes: tuple[str, ...], post: Post) -> None:
+    def __init__(self, server: ViserServer, held: Held, post: Post) -> None:
         self._gui, self._post = server.gui, post
         self._unit: Unit = "mm"
         self.camera_commands: list[CommandHandle] = []
@@ -74,6 +76,7 @@ class Panels:
         self._gui.main_panel.dock_right()
         self._gui.main_panel.set_width(PANEL_WIDTH_PX)
         self._gui.add_html(f"<style>{static_text('console.css')}</style>")
+        self._newer = self._gui.add_html("")
         self._result = self._gui.add_html("")
         self._add_buttons("View", VIEW)
         self._add_buttons("Drawing", HISTORY)
@@ -85,7 +88,7 @@ class Panels:
         self._add_keys()
         panel = self._gui.add_panel()
         self.decision, self.sections, self.stages, tool, self.picture, *others = map(panel.add_tab, TABS)
-        why, draw, settings, self.help = others
+        why, self.history, draw, settings, self.help = others
         with draw:
             self._add_controls()
         with tool:
@@ -97,13 +100,13 @@ class Panels:
         with settings:
             self._settings = SettingsPanel(self._gui, self._choosing)
         with self.help:
-            about = "".join(f"<p>{escape(line)}</p>" for line in (name, *notes))
-            self._gui.add_html(static_text("help.html") + f'<div class="rr-help"><h4>Scene</h4>{about}</div>')
+            self._help = self._gui.add_html(_help_html(held))
         panel.dock_below(self._gui.main_panel)
 
     def show(self, session: Session) -> None:
         """Bring texts and controls up to date, sending only what has changed."""
         self._unit = session.unit
+        set_to(self._newer, "content", newer_html(session))
         set_to(self._result, "content", in_session_unit(result_html(session), session))
         set_to(self._kind, "value", session.shown.kind or AUTO)
         set_to(self._direction, "value", DIRECTION_NAMES[session.shown.direction])
@@ -118,6 +121,10 @@ class Panels:
             set_to(self._origins, "content", in_unit(origins_html(), self._unit))
             self._tools.show(session)
         self._settings.show(session)
+
+    def hold(self, held: Held) -> None:
+        """Say of another frame which one it is."""
+        self._help.content = _help_html(held)
 
     def _add_knowledge(self) -> None:
         """Folded away: what is in force stands in its label."""
@@ -162,3 +169,9 @@ class Panels:
                 self._post(event.client_id, made)
 
         return chosen
+
+
+def _help_html(held: Held) -> str:
+    """All keys, and which scene it is."""
+    about = "".join(f"<p>{escape(line)}</p>" for line in (held.name, *held.notes))
+    return static_text("help.html") + f'<div class="rr-help"><h4>Scene</h4>{about}</div>'

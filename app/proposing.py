@@ -7,6 +7,7 @@ from app.deciding.events import Offered, Unmeasured
 from app.deciding.states import Offer
 from app.record.evidence import proposal
 from app.session import Session
+from app.tool_text import tools_in_the_way
 from rotrecon.drawing import Drawing
 from rotrecon.reconstruction import Reconstruction
 from rotrecon.settings import Settings
@@ -39,6 +40,7 @@ def offered(evidence: Evidence, who: str) -> Offered | Unmeasured:
     entry = proposal(who, result.frame, evidence.drawing, settings, result)
     if result.solid is None or entry.digest is None:
         return Unmeasured(seconds(), entry)
+    in_the_way = tools_in_the_way(result)
     offer = Offer(
         revision=evidence.revision,
         digest=entry.digest,
@@ -46,5 +48,9 @@ def offered(evidence: Evidence, who: str) -> Offered | Unmeasured:
         tool=result.tool.tool.name if isinstance(result.tool, ToolProposal) else None,
         tools=tuple(tool.name for tool in settings.tools),
         for_dangerous=frozenset(tool.name for tool in settings.tools if tool.dangerous_ok),
+        in_the_way=in_the_way,
     )
+    if in_the_way:
+        said = " ".join(f"{tool}: {' '.join(lines)}" for tool, lines in in_the_way.items())
+        entry = replace(entry, payload={**entry.payload, "in_the_way": said})
     return Offered(seconds(), offer, entry)

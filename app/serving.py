@@ -9,7 +9,7 @@ from app.deciding.settings import DecisionSettings
 from app.door.door import Door
 from app.door.hidden_viser import HiddenViser
 from app.door.listening import Certificate, listen
-from app.last_session import SessionFile
+from app.last_session import LastSessions
 from app.record.store import Record
 from app.robot.api import robot_routes
 from app.robot.cell import ConsoleCell
@@ -52,14 +52,14 @@ def serve(
         deciding=deciding,
         name_of=hidden.name_of,
         capture=capture,
-        last=None if record is None else SessionFile(record.folder, frame),
+        last=None if record is None else LastSessions(record.folder),
         tour=tour,
     )
     console.start()
     door = Door(hidden, people, socket, host, certificate, camera_commands=console.panels.camera_commands)
     try:
         door.start(robot_routes(ConsoleCell(console), door.gate, door.guard))
-        for line in (*console.notes, *announcements(door)):
+        for line in (*console.held.notes, *announcements(door)):
             announce(line)
         ThreadEvent().wait()
     except KeyboardInterrupt:

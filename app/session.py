@@ -8,7 +8,9 @@ from app.deciding.noting import refused
 from app.deciding.step import decide
 from app.drawing_steps import drawn_on
 from app.events import DrawingEvent, Event, PageLeft, Refused, SettingTyped, UnitChosen
+from app.newer_steps import NewerEvent, with_newer
 from app.object_drawing import with_axis
+from app.reopening import OpenedAgain, opened_again
 from app.session_state import Measured as Measured
 from app.session_state import Notice as Notice
 from app.session_state import Session as Session
@@ -27,7 +29,7 @@ class Done:
     event: Event
 
 
-def step(session: Session, event: Event | DecisionEvent | Done) -> Session:
+def step(session: Session, event: Event | DecisionEvent | NewerEvent | OpenedAgain | Done) -> Session:
     """The session after an event; an event that makes no sense leaves it as it is."""
     if isinstance(event, Done):
         why = no_control(session.decision, event.page)
@@ -36,6 +38,10 @@ def step(session: Session, event: Event | DecisionEvent | Done) -> Session:
         event = event.event
     if isinstance(event, DecisionEvent):
         return _decided(session, event)
+    if isinstance(event, NewerEvent):
+        return with_newer(session, event)
+    if isinstance(event, OpenedAgain):
+        return opened_again(session, event)
     if isinstance(event, SettingTyped | UnitChosen):
         return _bound(session, set_to(session, event))
     return _bound(session, _drawn(session, event))
@@ -53,10 +59,14 @@ def _drawn(session: Session, event: DrawingEvent) -> Session:
 
 
 def _decided(session: Session, event: DecisionEvent) -> Session:
-    """The session after something about the decision; a drag of a page that is no longer in control has no end."""
+    """The session after something about the decision.
+
+    What a page that is no longer in control has begun has no end: a drag, and the taking of a newer frame.
+    """
     after = replace(session, decision=decide(session.decision, event))
     if after.decision.control.holder == session.decision.control.holder:
         return after
+    after = replace(after, taking=None)
     return _bound(after, _drawn(after, PageLeft()))
 
 

@@ -6,10 +6,12 @@ from typing import Literal
 from app.adjustable import Chosen
 from app.deciding.states import Deciding
 from app.events import Refused
+from app.held import Held, Newer, Taking
 from app.object_drawing import ObjectDrawing, Part, Pixel
 from app.units import Unit
 from rotrecon.reconstruction import Reconstruction
 from rotrecon.settings import Settings
+from rotrecon.tool_table import Tool
 
 Objects = tuple[ObjectDrawing, ...]
 VEIL = "a class is marked dangerous: say in the Decision panel what the object is, and the measurement is shown"
@@ -66,6 +68,12 @@ class Session:
     """The settings that the program was started with."""
     unit: Unit = "mm"
     """That lengths are shown in."""
+    held: Held | None = None
+    """What is drawn on and measured in."""
+    newer: Newer | None = None
+    """The latest that has come since, and waits to be taken."""
+    taking: Taking | None = None
+    """The one that is being made the held frame."""
 
     @property
     def chosen(self) -> Chosen:
@@ -100,6 +108,19 @@ class Session:
     def proposal_told(self) -> bool:
         """Whether the tool that fits may be named: its proposal is on disk."""
         return self.decision.case is not None and self.decision.fault is None
+
+    @property
+    def entry(self) -> int | None:
+        """Of the record, whose frame is held; None for one that was opened or taken."""
+        return None if self.held is None else self.held.entry
+
+    @property
+    def overriding(self) -> Tool | None:
+        """The tool that the operator has chosen against the program's answer."""
+        case, result = self.decision.case, self.reconstruction
+        if case is None or case.override is None or result is None:
+            return None
+        return next((tool for tool in result.settings.tools if tool.name == case.tool), None)
 
     @property
     def visible(self) -> "Session":

@@ -9,6 +9,8 @@ from app.session import Session
 from app.showing import Choosing, in_session_unit, set_to, show_unit
 from app.tool_text import NOTHING, next_view_html, place_html, tools_html
 from app.units import INCH_DECIMALS, Unit, from_mm, to_mm
+from rotrecon.contact import limits_of
+from rotrecon.reconstruction import Reconstruction
 
 ALONG = "Contact along the axis, {}"
 ANGLE_STEP_DEG, ALONG_STEP_MM = 5, 5
@@ -42,9 +44,24 @@ class ToolPanel:
         contact, result = session.shown.contact, session.reconstruction
         self._placed, self._unit = (degrees(contact.angle_rad), 1000 * contact.along_m), session.unit
         show_unit(self._along, session.unit, ALONG, ALONG_STEP_MM)
+        for name, limit_mm in zip(("min", "max"), limits_mm(result), strict=True):
+            set_to(self._along, name, None if limit_mm is None else from_mm(limit_mm, session.unit))
         shown = (self._placed[0], from_mm(self._placed[1], session.unit))
         for handle, value in zip((self._angle, self._along), shown, strict=True):
             if abs(handle.value - value) > 1e-6:
                 handle.value = round(value, 3 if session.unit == "mm" else INCH_DECIMALS)
-        for handle, text in ((self._tools, tools_html), (self._place, place_html), (self._next, next_view_html)):
-            set_to(handle, "content", in_session_unit(text(result), session))
+        texts = (
+            (self._tools, tools_html(result)),
+            (self._place, place_html(result, session.overriding)),
+            (self._next, next_view_html(result)),
+        )
+        for handle, content in texts:
+            set_to(handle, "content", in_session_unit(content, session))
+
+
+def limits_mm(result: Reconstruction | None) -> tuple[float | None, float | None]:
+    """How far along the axis a contact may be, to either side of the middle; no limits before it is measured."""
+    if result is None or result.solid is None:
+        return None, None
+    most_mm = 1000 * limits_of(result.solid).along_m
+    return -most_mm, most_mm

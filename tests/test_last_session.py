@@ -17,24 +17,36 @@ from app.console_items import FromPage
 from app.deciding.events import ArmPressed, ControlTaken, DecisionEvent, HoldTicked, PageCame, PicturesSent
 from app.deciding.states import Decided
 from app.events import Event, KindChosen, PolygonClosed, SectionToggled, SettingTyped, UnitChosen, VertexClicked
-from app.last_session import SessionFile
+from app.held import Held
+from app.last_session import LastSessions
 from app.object_drawing import ObjectDrawing, Pixel
 from app.record.store import Record
 from app.session import Session, step
 from rotrecon.camera import PinholeCamera
+from rotrecon.capture import Capture
 from rotrecon.drawing import AreaOfInterest, ObjectAxis
+from rotrecon.frame import Frame
 from rotrecon.settings import Settings
 from rotrecon.simulation.simulate import Simulated, simulate
 
 PAGE = 7
 CAMERA = PinholeCamera(320, 240, np.array([[300.0, 0, 160.0], [0, 300.0, 120.0], [0, 0, 1]]))
 SIZE_PX = (CAMERA.width, CAMERA.height)
-EMPTY = Session(SIZE_PX)
 
 
 @pytest.fixture(scope="module")
 def scene() -> Simulated:
     return simulate("pipe", 3, CAMERA, supersampling=1)
+
+
+@pytest.fixture(scope="module")
+def empty(scene: Simulated) -> Session:
+    return on(scene.frame)
+
+
+def on(frame: Frame) -> Session:
+    """A session that has just begun."""
+    return Session(SIZE_PX, held=Held(frame, "A pipe", Capture("A pipe", recorded=frame)))
 
 
 places = st.tuples(st.floats(0, 319, allow_subnormal=False), st.floats(0, 239, allow_subnormal=False))
@@ -51,16 +63,16 @@ drawings = st.builds(
 
 @settings(max_examples=30)
 @given(st.data())
-def test_what_is_kept_comes_back_as_it_was(scene: Simulated, data: st.DataObject) -> None:
+def test_what_is_kept_comes_back_as_it_was(empty: Session, data: st.DataObject) -> None:
     objects = tuple(data.draw(st.lists(drawings, min_size=1, max_size=3)))
-    session = replace(EMPTY, objects=objects, selected=data.draw(st.integers(0, len(objects) - 1)))
+    session = replace(empty, objects=objects, selected=data.draw(st.integers(0, len(objects) - 1)))
     for one in data.draw(st.lists(st.sampled_from([*NUMBERS.values()]), max_size=3)):
         session = step(session, SettingTyped(one.key, one.setting(data.draw(st.sampled_from([one.low, one.high])))))
     session = step(session, UnitChosen(data.draw(st.sampled_from(["mm", "inch"]))))
     with TemporaryDirectory() as folder:
-        SessionFile(Path(folder), scene.frame).keep(session)
-        file = SessionFile(Path(folder), scene.frame)
-        back = file.resumed(EMPTY)
+        LastSessions(Path(folder)).keep(session)
+        file = LastSessions(Path(folder))
+        back = file.resumed(empty)
         assert file.problem is None
     assert (back.objects, back.selected, back.unit, back.chosen) == (
         session.objects,
@@ -72,22 +84,24 @@ def test_what_is_kept_comes_back_as_it_was(scene: Simulated, data: st.DataObject
 
 def kept(folder: Path, scene: Simulated) -> Session:
     """A session whose file is in a folder."""
-    session = replace(EMPTY, objects=(ObjectDrawing(scene.drawing.area, scene.drawing.axis),))
-    SessionFile(folder, scene.frame).keep(session)
+    session = replace(on(scene.frame), objects=(ObjectDrawing(scene.drawing.area, scene.drawing.axis),))
+    LastSessions(folder).keep(session)
     return session
 
 
-def test_a_file_damaged_anywhere_is_told_of_left_aside_and_ends_nothing(scene: Simulated, tmp_path: Path) -> None:
+def test_a_file_damaged_anywhere_is_told_of_left_aside_and_ends_nothing(
+    scene: Simulated, empty: Session, tmp_path: Path
+) -> None:
     session = kept(tmp_path, scene)
-    path = SessionFile(tmp_path, scene.frame).path
+    path = LastSessions(tmp_path).path(scene.frame)
     whole = path.read_bytes()
     damaged = [whole[:n] for n in range(0, len(whole), 40)]
     damaged += [whole[:n] + bytes([whole[n] ^ 1]) + whole[n + 1 :] for n in range(0, len(whole), 17)]
     damaged += [b"\xff\x00" * 50, whole + b" "]
     for content in damaged:
         path.write_bytes(content)
-        file = SessionFile(tmp_path, scene.frame)
-        assert file.resumed(EMPTY) == EMPTY
+        file = LastSessions(tmp_path)
+        assert file.resumed(empty) == empty
         assert file.problem is not None
         assert "damaged" in file.problem
         assert path.with_suffix(".damaged").read_bytes() == content
@@ -96,32 +110,38 @@ def test_a_file_damaged_anywhere_is_told_of_left_aside_and_ends_nothing(scene: S
         assert path.read_bytes() == whole
 
 
-def test_a_drawing_or_a_setting_that_cannot_be_is_left_aside(scene: Simulated, tmp_path: Path) -> None:
+def test_a_drawing_or_a_setting_that_cannot_be_is_left_aside(empty: Session, tmp_path: Path) -> None:
     corner: Pixel = (0.0, 0.0)
     off = ObjectDrawing(AreaOfInterest((corner, (900.0, 0.0), (50.0, 50.0))))
     few = ObjectDrawing(AreaOfInterest((corner, (9.0, 9.0))))
-    bad = [replace(EMPTY, objects=(one,)) for one in (off, few)]
-    bad += [replace(EMPTY, settings=Settings(layers=77)), replace(EMPTY, objects=(ObjectDrawing(),), selected=3)]
+    bad = [replace(empty, objects=(one,)) for one in (off, few)]
+    bad += [replace(empty, settings=Settings(layers=77)), replace(empty, objects=(ObjectDrawing(),), selected=3)]
     for session in bad:
-        SessionFile(tmp_path, scene.frame).keep(session)
-        file = SessionFile(tmp_path, scene.frame)
-        assert file.resumed(EMPTY) == EMPTY
+        LastSessions(tmp_path).keep(session)
+        file = LastSessions(tmp_path)
+        assert file.resumed(empty) == empty
         assert file.problem is not None
 
 
-def test_a_disk_that_does_not_obey_is_told_of(scene: Simulated, tmp_path: Path) -> None:
+def test_a_disk_that_does_not_obey_is_told_of(empty: Session, tmp_path: Path) -> None:
     (tmp_path / "sessions").write_text("in the way")
-    file = SessionFile(tmp_path, scene.frame)
-    file.keep(replace(EMPTY, objects=(ObjectDrawing(kind="rod"),)))
+    file = LastSessions(tmp_path)
+    file.keep(replace(empty, objects=(ObjectDrawing(kind="rod"),)))
     assert file.problem is not None
     assert "not kept" in file.problem
 
 
-def test_another_scene_has_a_session_of_its_own(scene: Simulated, tmp_path: Path) -> None:
-    kept(tmp_path, scene)
-    other = replace(scene.frame, points_m=scene.frame.points_m + np.float32(0.001))
-    file = SessionFile(tmp_path, other)
-    assert (file.resumed(EMPTY), file.problem) == (EMPTY, None)
+def test_each_scene_has_a_session_of_its_own(scene: Simulated, empty: Session, tmp_path: Path) -> None:
+    drawn = kept(tmp_path, scene)
+    other = on(replace(scene.frame, points_m=scene.frame.points_m + np.float32(0.001)))
+    files = LastSessions(tmp_path)
+    assert (files.resumed(other), files.problem) == (other, None)
+    files.keep(other)
+    assert not files.path(other.held.frame).exists(), "nothing was drawn"
+    files.keep(replace(other, objects=(ObjectDrawing(kind="cone"),)))
+    files.keep(replace(drawn, unit="inch"))
+    assert LastSessions(tmp_path).resumed(other).shown.kind == "cone"
+    assert LastSessions(tmp_path).resumed(empty).unit == "inch"
 
 
 def do(console: Console, *events: Event | DecisionEvent) -> None:
@@ -131,7 +151,7 @@ def do(console: Console, *events: Event | DecisionEvent) -> None:
 
 
 def started(scene: Simulated, folder: Path, record: Record) -> Console:
-    last = SessionFile(folder, scene.frame)
+    last = LastSessions(folder)
     console = Console(scene.frame, "A pipe", Settings(), port=0, cloud_points=10, record=record, last=last)
     console.start()
     do(console, PageCame(seconds(), PAGE, "Ann"))

@@ -17,8 +17,10 @@ def noted(deciding: Deciding, kind: EntryKind, who: str, **said: object) -> Deci
     if case is None:
         entry = Entry(kind, who, payload=payload)
     else:
-        override = None if case.override is None else case.override.reason
-        about = {"proposal": case.number, "tool": case.tool} | ({} if override is None else {"override": override})
+        about: dict[str, object] = {"proposal": case.number, "tool": case.tool}
+        if case.override is not None:
+            about |= {"override": case.override.reason}
+            about |= {"in_the_way": " ".join(case.in_the_way)} if case.in_the_way else {}
         entry = Entry(kind, who, case.offer.digest, {**about, **payload})
     return replace(deciding, outbox=(*deciding.outbox, entry))
 

@@ -12,7 +12,7 @@ from app.console import Console
 from app.decided import decision_of
 from app.deciding.events import ControlGiven
 from app.events import Cleared
-from app.last_session import SessionFile
+from app.last_session import LastSessions
 from app.page import DarkChosen
 from app.panels import TABS
 from app.record.store import Record
@@ -46,7 +46,7 @@ def newcomer(scene: Simulated, browser: Browser, tmp_path_factory: pytest.TempPa
             cloud_points=10,
             record=record,
             deciding=SLOW_PAGE,
-            last=SessionFile(folder, scene.frame),
+            last=LastSessions(folder),
             tour=True,
         )
         console.start()

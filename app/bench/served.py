@@ -1,0 +1,71 @@
+"""A console behind the door as `rotrecon serve` opens it, with pages that only the wire knows."""
+
+from collections.abc import Iterator
+from contextlib import closing, contextmanager
+from dataclasses import dataclass
+from math import inf
+from pathlib import Path
+from tempfile import TemporaryDirectory
+
+from app.bench.poses import CAMERA, STEREO
+from app.clock import seconds
+from app.console import Console
+from app.console_items import FromPage
+from app.deciding.events import ControlTaken
+from app.deciding.settings import DecisionSettings
+from app.door.door import Door
+from app.door.hidden_viser import HiddenViser
+from app.door.listening import listen
+from app.record.store import Record
+from rotrecon.settings import Method, Settings
+from rotrecon.simulation.simulate import Simulated, simulate
+
+OBJECT = "leg"
+PATIENT = DecisionSettings(silent_s=inf)
+"""Pages on the wire do not answer when they are asked whether they are there."""
+
+
+@dataclass(frozen=True, eq=False)
+class Served:
+    """What is measured from outside."""
+
+    simulated: Simulated
+    console: Console
+    door: Door
+
+    @property
+    def cookie(self) -> str:
+        """What a page of an operator who has logged in carries."""
+        return f"{self.door.gate.cookie}={self.door.gate.passes.issue('bench', by_link=True)}"
+
+    def give_control(self, client_id: int) -> None:
+        """Let a page draw."""
+        taken = FromPage(client_id, ControlTaken(seconds(), client_id))
+        self.console.server.get_event_loop().call_soon_threadsafe(self.console.post, taken)
+        self.console.wait_until_idle()
+
+
+@contextmanager
+def served(method: Method) -> Iterator[Served]:
+    """A simulated frame of 1280 x 720 px, served on loopback with a record."""
+    simulated = simulate(OBJECT, 0, CAMERA, STEREO, supersampling=1)
+    with TemporaryDirectory() as place, closing(Record.open(Path(place))) as record:
+        people, hidden = Path(place) / "users.json", HiddenViser()
+        console = Console(
+            simulated.frame,
+            OBJECT,
+            Settings(method=method),
+            open_viser=hidden.open,
+            record=record,
+            deciding=PATIENT,
+            name_of=hidden.name_of,
+        )
+        console.start()
+        bound = listen("127.0.0.1", 0, people, None)
+        door = Door(hidden, people, bound, camera_commands=console.panels.camera_commands)
+        door.start()
+        try:
+            yield Served(simulated, console, door)
+        finally:
+            door.stop()
+            console.stop()
