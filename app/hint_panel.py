@@ -1,6 +1,7 @@
 """The line on top of a page that says what to do next, and leads on where a tour is on."""
 
 from collections.abc import Callable
+from html import escape
 from typing import Any
 
 from viser import ClientHandle, GuiEvent, GuiTabHandle
@@ -11,6 +12,7 @@ from app.session import Session
 from app.showing import in_session_unit, set_to
 from app.tour import sentence_of, tour_html
 
+NOBODY = "Nobody is in control: take it in the Decision panel below, then draw."
 ON_TOP = -2.0
 """Order before everything that all pages share."""
 
@@ -29,7 +31,7 @@ class HintPanel:
 
     def show(self, session: Session, page: PageState) -> None:
         """Bring it up to date."""
-        set_to(self._hint, "content", in_session_unit(hint_html(session, sentence_of(page), tour_html(page)), session))
+        set_to(self._hint, "content", in_session_unit(_html(session, page), session))
         set_to(self._close, "visible", page.tour is not None)
 
     def _posting(self, event: PageEvent) -> Any:
@@ -38,3 +40,11 @@ class HintPanel:
                 self._post(event)
 
         return clicked
+
+
+def _html(session: Session, page: PageState) -> str:
+    """What to do next; first of all somebody has to be in control."""
+    led, progress = sentence_of(page), tour_html(page)
+    if session.decision.control.holder is not None:
+        return hint_html(session, led, progress)
+    return f'<div class="rr-hint rr-amber" data-testid="hint">{escape(led or NOBODY)}</div>{progress}'

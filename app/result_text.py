@@ -23,21 +23,19 @@ REASONS = {
     "odd_radius": "odd radius",
 }
 """Why a section was dropped, as a person says it."""
-NOBODY = "Nobody is in control: take it in the Decision panel below, then draw."
 FIELD = '<div class="rr-field" {origin}><span>{name}</span><b data-field="{key}" data-value="{exact}">{text}</b></div>'
 
 
 def hint_html(session: Session, led: str | None = None, progress: str = "") -> str:
-    """What to do next; amber when something is wrong with what is shown, or nobody may do anything.
+    """What to do next; amber when something is wrong with what is shown.
 
     `led` is what a tour says, and follows a warning about a result that is there all the same; `progress` is its HTML.
     """
     warned = warning(session)
-    nobody = session.decision.control.holder is None
-    text = (led or NOBODY) if nobody else hint(session, led)
+    text = hint(session, led)
     if led is not None and warned is not None and session.reconstruction and session.reconstruction.solid:
         text = f"{warned} {led}"
-    style = "rr-hint" if warned is None and not nobody else "rr-hint rr-amber"
+    style = "rr-hint" if warned is None else "rr-hint rr-amber"
     return f'<div class="{style}" data-testid="hint" {from_("reasons")}>{escape(text)}</div>{progress}'
 
 

@@ -9,7 +9,6 @@ from hypothesis import strategies as st
 
 from app import charts, result_text
 from app.answers import answer_of
-from app.deciding.events import ControlTaken, PageCame
 from app.describe import describe
 from app.events import Reconstructed
 from app.object_drawing import ObjectDrawing
@@ -35,8 +34,7 @@ def result() -> Reconstruction:
 def session(result: Reconstruction) -> Session:
     camera = result.frame.camera
     drawn = ObjectDrawing(result.drawing.area, result.drawing.axis)
-    session = step(Session((camera.width, camera.height), (drawn,)), Reconstructed(0, result))
-    return step(step(session, PageCame(0.0, 1, "Ann")), ControlTaken(0.0, 1))
+    return step(Session((camera.width, camera.height), (drawn,)), Reconstructed(0, result))
 
 
 @pytest.mark.parametrize(
