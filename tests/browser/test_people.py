@@ -60,7 +60,7 @@ def tab(operator: Operator, name: str) -> None:
     one = operator.page.get_by_role("tab", name=name)
 
     def chosen() -> bool:
-        """Clicks until it is, as tabs may move when the screen has changed; no frame of software WebGL is waited for."""
+        """Clicks until it is, as tabs may move with the screen; no frame of software WebGL is waited for."""
         one.click(force=True)
         return one.get_attribute("aria-selected") == "true"
 
