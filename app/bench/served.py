@@ -5,6 +5,7 @@ from contextlib import closing, contextmanager
 from dataclasses import dataclass
 from math import inf
 from pathlib import Path
+from secrets import token_urlsafe
 from tempfile import TemporaryDirectory
 
 from app.bench.poses import CAMERA, STEREO
@@ -16,11 +17,12 @@ from app.deciding.settings import DecisionSettings
 from app.door.door import Door
 from app.door.hidden_viser import HiddenViser
 from app.door.listening import listen
+from app.door.people import with_person, write_people
 from app.record.store import Record
 from rotrecon.settings import Method, Settings
 from rotrecon.simulation.simulate import Simulated, simulate
 
-OBJECT = "leg"
+OBJECT, WATCHER = "leg", "Walt"
 PATIENT = DecisionSettings(silent_s=inf)
 """Pages on the wire do not answer when they are asked whether they are there."""
 
@@ -38,6 +40,11 @@ class Served:
         """What a page of an operator who has logged in carries."""
         return f"{self.door.gate.cookie}={self.door.gate.passes.issue('bench', by_link=True)}"
 
+    @property
+    def watchers_cookie(self) -> str:
+        """The same of a watcher."""
+        return f"{self.door.gate.cookie}={self.door.gate.passes.issue(WATCHER)}"
+
     def give_control(self, client_id: int) -> None:
         """Let a page draw."""
         taken = FromPage(client_id, ControlTaken(seconds(), client_id))
@@ -51,6 +58,7 @@ def served(method: Method) -> Iterator[Served]:
     simulated = simulate(OBJECT, 0, CAMERA, STEREO, supersampling=1)
     with TemporaryDirectory() as place, closing(Record.open(Path(place))) as record:
         people, hidden = Path(place) / "users.json", HiddenViser()
+        write_people(people, with_person({}, WATCHER, "watcher", token_urlsafe()))
         console = Console(
             simulated.frame,
             OBJECT,
