@@ -9,6 +9,7 @@ from app.deciding.states import Armed, Case, Decided, Deciding, Rejected
 from app.decision import Decision, proposal
 from app.session import Session
 
+CHANGED = "a frame that was pushed in since shows a change in the area"
 RECORDED = "this is a recorded scene: nothing of it stands in front of the arm now"
 
 
@@ -24,7 +25,7 @@ def decision_of(session: Session, moment: Callable[[float], datetime] = moment) 
     if case is None or result is None or deciding.fault is not None:
         return Decision()
     told = proposal(result, case.offer.digest)
-    told = replace(told, reasons=(*_recorded(deciding), *_words(case), *told.reasons))
+    told = replace(told, reasons=(*_of_frame(deciding), *_words(case), *told.reasons))
     match case.stage:
         case Armed():
             return replace(told, state="armed", tool=case.tool)
@@ -36,8 +37,13 @@ def decision_of(session: Session, moment: Callable[[float], datetime] = moment) 
             return told
 
 
-def _recorded(deciding: Deciding) -> tuple[str, ...]:
-    return (RECORDED,) if deciding.watched is not None and deciding.watched.held.source == "recorded" else ()
+def _of_frame(deciding: Deciding) -> tuple[str, ...]:
+    """What of the frame a controller should know before it acts."""
+    watched = deciding.watched
+    if watched is None:
+        return ()
+    recorded = (RECORDED,) if watched.held.source == "recorded" else ()
+    return (*recorded, CHANGED) if watched.changed else recorded
 
 
 def _words(case: Case) -> tuple[str, ...]:
