@@ -41,7 +41,7 @@ class Listed:
 class Told:
     """What has come of something that a page has asked for; `good` where numbers are the same."""
 
-    page: int
+    pages: tuple[int, ...]
     number: int | None
     text: str
     good: bool = False
@@ -51,7 +51,7 @@ class Told:
 class Exported:
     """A file for a page."""
 
-    page: int
+    pages: tuple[int, ...]
     number: int
     name: str
     content: bytes
@@ -112,7 +112,7 @@ class Archive:
     def ask(self, page: int, asked: Asked, veiled: bool) -> None:
         """Begin with what a page asks for, unless it waits for something already."""
         if page in self._tasks:
-            self._post(Told(page, asked.number, "One thing after the other: the one before is not done yet."))
+            self._post(Told((page,), asked.number, "One thing after the other: the one before is not done yet."))
         else:
             self._start(page, lambda: self._read(page, asked, veiled))
 
@@ -145,25 +145,25 @@ class Archive:
         try:
             return self._answered(page, asked, veiled)
         except (StoreError, NoSuchEntry, NothingToExport, DrawingError) as error:
-            return Told(page, asked.number, f"Not possible: {error}.")
+            return Told((page,), asked.number, f"Not possible: {error}.")
         except Exception:
             log.exception("what was asked of entry %s has failed", asked.number)
-            return Told(page, asked.number, UNKNOWN)
+            return Told((page,), asked.number, UNKNOWN)
 
     def _answered(self, page: int, asked: Asked, veiled: bool) -> Posted:
         if isinstance(asked, OpeningAsked) and asked.number is None:
             return Fetched(page, self._first, facts_of(self._first.frame), ObjectDrawing())
         if self._record is None or self._history is None or asked.number is None:
-            return Told(page, asked.number, NO_RECORD)
+            return Told((page,), asked.number, NO_RECORD)
         if veiled and self._history.line(asked.number).kind not in NAMED:
-            return Told(page, asked.number, VEILED)
+            return Told((page,), asked.number, VEILED)
         match asked:
             case ReplayAsked(number):
                 again = replay(evidence_of(self._record, self._record.entry(number)))
-                return Told(page, number, told_of(again), again.same)
+                return Told((page,), number, told_of(again), again.same)
             case ReportAsked(number, format_):
                 content = export_entry(self._record, number, format_)
-                return Exported(page, number, file_name(number, format_), content)
+                return Exported((page,), number, file_name(number, format_), content)
             case OpeningAsked():
                 evidence = evidence_of(self._record, self._record.entry(asked.number))
                 frame, name = evidence.frame, f"Entry {asked.number} of the record"

@@ -239,12 +239,8 @@ class Console:
                 self.session = self._desk.taken(self.session, item)
             case Fetched():
                 self.session = step(self.session, item.opening(seconds(), wall_s()))
-            case Listed(pages=pages):
-                for client_id in pages:
-                    if client_id in self.pages:
-                        self.pages[client_id].told(item)
-            case Told(page=client_id) | Exported(page=client_id):
-                if client_id in self.pages:
+            case Listed() | Told() | Exported():
+                for client_id in set(item.pages) & set(self.pages):
                     self.pages[client_id].told(item)
             case Newer():
                 self.session = self._newcomers.came(self.session, item)

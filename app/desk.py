@@ -85,7 +85,7 @@ class Desk:
             write, self._record, decision.outbox, self._frame_of, lambda: _digest(evidence, settings)
         ):
             session = step(session, event)
-            self.written += isinstance(event, Written)
+            self.written += 1 if isinstance(event, Written) else 0
         waiting = {entry.digest for entry in session.decision.outbox}
         self._measured_in = {digest: frame for digest, frame in self._measured_in.items() if digest in waiting}
         if session.decision.fault not in (None, decision.fault):

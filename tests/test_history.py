@@ -198,7 +198,7 @@ def test_what_cannot_be_done_with_an_entry_is_said(record: Record, result: Recon
         assert why in first.text
         assert not first.good
     (veiled,) = asked(record, result.frame, OpeningAsked(1), veiled=True)
-    assert veiled == Told(PAGE, 1, VEILED)
+    assert veiled == Told((PAGE,), 1, VEILED)
     (none,) = asked(None, result.frame, ReplayAsked(1))
     assert isinstance(none, Told)
     assert "without a record" in none.text

@@ -38,7 +38,7 @@ from rotrecon.reconstruction import Reconstruction
 from rotrecon.residuals import BEFORE, BEHIND, Residuals, residuals_of, with_residuals
 from rotrecon.settings import Settings
 from rotrecon.simulation.simulate import Simulated, simulate
-from rotrecon.tools import ToolProposal
+from rotrecon.tools import NoTool, ToolProposal
 from rotrecon.workspace import Workspace
 from tests.deciding.desk import ANN, Table
 
@@ -282,6 +282,13 @@ def test_a_tool_chosen_against_the_answer_is_the_one_that_is_shown(session: Sess
     table.do(OverrideTyped(table.now, ANN, table.number, "clipper", "the cutter is blunt today"))
     assert replace(session, decision=table.deciding).overriding == clipper
     assert "clipper, which is not proposed," in place_html(result, clipper)
+    none = replace(result, tool=NoTool(("no tool fits",)))
+    told = decision_of(replace(session, measured=Measured(0, none), decision=table.deciding))
+    assert told.T_base_contact is not None
+    assert isinstance(result.tool, ToolProposal)
+    assert np.allclose(told.T_base_contact[:3, 3], result.tool.contact_point_m), (
+        "wherever the program has proposed none"
+    )
     pictures = Pictures(result.frame)
     shown, other = (pictures.camera_view(result, 0.0, SECTION, "tool", tool) for tool in (None, clipper))
     assert (shown != other).any()

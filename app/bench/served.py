@@ -5,6 +5,7 @@ from contextlib import closing, contextmanager
 from dataclasses import dataclass
 from math import inf
 from pathlib import Path
+from secrets import token_urlsafe
 from tempfile import TemporaryDirectory
 
 from app.bench.poses import CAMERA, STEREO
@@ -16,11 +17,14 @@ from app.deciding.settings import DecisionSettings
 from app.door.door import Door
 from app.door.hidden_viser import HiddenViser
 from app.door.listening import listen
+from app.door.people import with_person, write_people
 from app.record.store import Record
+from app.robot.api import PREFIX, robot_routes
+from app.robot.cell import ConsoleCell
 from rotrecon.settings import Method, Settings
 from rotrecon.simulation.simulate import Simulated, simulate
 
-OBJECT = "leg"
+OBJECT, WATCHER, ROBOT = "leg", "Walt", "arm"
 PATIENT = DecisionSettings(silent_s=inf)
 """Pages on the wire do not answer when they are asked whether they are there."""
 
@@ -32,11 +36,23 @@ class Served:
     simulated: Simulated
     console: Console
     door: Door
+    secret: str
+    """Of the watcher and of the robot."""
 
     @property
     def cookie(self) -> str:
         """What a page of an operator who has logged in carries."""
         return f"{self.door.gate.cookie}={self.door.gate.passes.issue('bench', by_link=True)}"
+
+    @property
+    def watchers_cookie(self) -> str:
+        """The same of a watcher."""
+        return f"{self.door.gate.cookie}={self.door.gate.passes.issue(WATCHER)}"
+
+    @property
+    def interface(self) -> str:
+        """Where the robot's side is."""
+        return f"{self.door.address}{PREFIX}"
 
     def give_control(self, client_id: int) -> None:
         """Let a page draw."""
@@ -51,6 +67,9 @@ def served(method: Method) -> Iterator[Served]:
     simulated = simulate(OBJECT, 0, CAMERA, STEREO, supersampling=1)
     with TemporaryDirectory() as place, closing(Record.open(Path(place))) as record:
         people, hidden = Path(place) / "users.json", HiddenViser()
+        secret = token_urlsafe()
+        everybody = with_person(with_person({}, WATCHER, "watcher", secret), ROBOT, "robot", secret)
+        write_people(people, everybody)
         console = Console(
             simulated.frame,
             OBJECT,
@@ -63,9 +82,9 @@ def served(method: Method) -> Iterator[Served]:
         console.start()
         bound = listen("127.0.0.1", 0, people, None)
         door = Door(hidden, people, bound, camera_commands=console.panels.camera_commands)
-        door.start()
+        door.start(robot_routes(ConsoleCell(console), door.gate, door.guard))
         try:
-            yield Served(simulated, console, door)
+            yield Served(simulated, console, door, secret)
         finally:
             door.stop()
             console.stop()

@@ -65,8 +65,11 @@ class ConsoleCell:
         """The decision as it stands, all of it on disk; idle while a drawing is being measured."""
         told = self._console.told
         case = told.decision.case
+        changed = told.decision.watched is not None and told.decision.watched.changed
         at = (
-            None if case is None else (told.reconstruction, case.number, case.stage, case.override, told.decision.fault)
+            None
+            if case is None
+            else (told.reconstruction, case.number, case.stage, case.override, told.decision.fault, changed)
         )
         with self._lock:
             if self._known[0] != at:

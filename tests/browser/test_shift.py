@@ -60,7 +60,7 @@ def shift(scene: Simulated, tmp_path: Path) -> Iterator[Shift]:
         scene.frame,
         "A pipe",
         Settings(),
-        cloud_points=500,
+        cloud_points=10,
         open_viser=hidden.open,
         record=record,
         deciding=SLOW_PAGE,
