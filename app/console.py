@@ -3,11 +3,11 @@
 import asyncio
 import io
 import logging
-from collections.abc import Callable, Iterator
-from contextlib import contextmanager, redirect_stdout
+from collections.abc import Callable
+from contextlib import redirect_stdout
 from dataclasses import replace
 
-from viser import CameraHandle, ClientHandle, ViserServer
+from viser import ClientHandle, ViserServer
 
 from app.adjustable import Chosen
 from app.archive import Archive, Exported, Fetched, Listed, Told
@@ -32,15 +32,14 @@ from app.heartbeat import Heartbeat
 from app.held import Held, Newer
 from app.last_session import LastSessions
 from app.measurements import Measurements
+from app.mishaps import logged
 from app.newcomers import Newcomers
 from app.newer_frames import facts_of
 from app.newer_steps import NewerPrepared, NewerReady, NewerUnusable
-from app.page import PageEvent
 from app.page_view import BRAND_COLOR, PageView
+from app.pages import Pages
 from app.panels import Panels
-from app.pictures import Pictures
 from app.record.store import Record
-from app.scene_view import SceneView
 from app.session import Done, Session, step
 from rotrecon.capture import Capture
 from rotrecon.frame import Frame
@@ -96,14 +95,12 @@ class Console:
             self.session = replace(self.session, held=replace(held, notes=(*notes, *told)))
         self.told = self.session
         """What pages and robots are told, all of it on disk; read it from any thread."""
-        self._name_of, self._shown = name_of, self.held
+        self._name_of = name_of
         self._heartbeat, self._archive = Heartbeat(deciding.silent_s), Archive(record, held, self.post)
         self._desk, self._newcomers = Desk(record, self.post), Newcomers(self.post)
         self._measurements = Measurements(self.post)
         self._host, self._port, self._cloud_points = host, port, cloud_points
-        self.pages: dict[int, PageView] = {}
         self._open_viser = open_viser or self._open_server
-        self._opened: dict[int, ClientHandle] = {}
         self._listeners: dict[object, Callable[[], object]] = {}
 
     @property
@@ -118,6 +115,16 @@ class Console:
         return self.held.frame
 
     @property
+    def pages(self) -> dict[int, PageView]:
+        """The open pages, by their clients' numbers."""
+        return self._shown.views
+
+    @property
+    def panels(self) -> Panels:
+        """What all of them share."""
+        return self._shown.panels
+
+    @property
     def address(self) -> str:
         """The address that was really got, which is another port when the one asked for is taken."""
         host = f"[{self._host}]" if ":" in self._host else self._host
@@ -130,14 +137,10 @@ class Console:
         self._loop = self.server.get_event_loop()
         self._queue: asyncio.Queue[Item] = asyncio.Queue()
         self._settled = asyncio.Event()
-        self._pictures = Pictures(self.frame)
         self.server.gui.configure_theme(
             dark_mode=True, show_logo=False, show_share_button=False, brand_color=BRAND_COLOR
         )
-        self.panels = Panels(self.server, self.held, self._post_from)
-        self._scene = SceneView(
-            self.server, self.frame, self._pictures.television(None, "picture"), self._cloud_points, self._post_from
-        )
+        self._shown = Pages(self.server, self.held, self._cloud_points, self.post, tour=self._tour)
         self.session = step(self.session, FrameOpened(seconds(), facts_of(self.frame), wall_s()))
         self.panels.show(self.session)
         self._running = asyncio.run_coroutine_threadsafe(self._run(), self._loop)
@@ -188,7 +191,7 @@ class Console:
             if Stopped() in items:
                 break
             for item in items:
-                with _logged("what happened was not taken in"):
+                with logged("what happened was not taken in"):
                     self._take(item)
             self.session = self._newcomers.compared(self.session)
             self._measurements.start(self.session)
@@ -197,7 +200,7 @@ class Console:
             browsing = {client_id: page.state.browsing for client_id, page in self.pages.items()}
             self._archive.look(browsing, self._desk.written, self.session.decision.veiled, seconds())
             only_time = all(isinstance(item, ClockTicked | PageHeard) for item in items)
-            with _logged("what happened was not recorded"):
+            with logged("what happened was not recorded"):
                 await self._tell(not only_time, any(isinstance(item, ClockTicked) for item in items))
             beside = (self._measurements, self._desk, self._newcomers, self._archive)
             if self._queue.empty() and not any(one.busy for one in beside):
@@ -215,7 +218,7 @@ class Console:
         if not happened and face(before.decision) == face(self.told.decision):
             return
         for changed in list(self._listeners.values()):
-            with _logged("a listener was not told"):
+            with logged("a listener was not told"):
                 changed()
         await asyncio.to_thread(self._show)
         self._desk.shown(self.told, self.pages)
@@ -252,95 +255,26 @@ class Console:
             case PicturesSent() | PageHeard():
                 self.session = step(self.session, item)
             case PageOpened(client):
-                self._opened[client.client_id] = client
+                self._shown.opened(client)
                 name = self._name_of(client.client_id) or SOMEBODY
                 self.session = step(self.session, PageCame(seconds(), client.client_id, name))
             case PageClosed(client_id):
-                self._opened.pop(client_id, None)
-                self.pages.pop(client_id, None)
+                self._shown.closed(client_id)
                 self.session = step(self.session, PageWent(seconds(), client_id))
             case CameraMoved() | Stopped():
                 pass
 
     def _show(self) -> None:
-        """Show the session on every page; runs in a thread, and only one at a time."""
-        session = self.told.visible
-        if self.held is not self._shown:
-            with _logged("the newer frame cannot be shown"):
-                self._hold(self.held)
-        with self.server.atomic():
-            with _logged("the panels cannot be shown"):
-                self.panels.show(session)
-            with _logged("the scene cannot be shown"):
-                self._scene.show(session.reconstruction, session.overriding)
-        self.server.flush()
-        while self._opened:
-            client_id, client = self._opened.popitem()
-            with self._unless_gone(client_id):
-                self.pages[client_id] = self._new_page(client)
-        for client_id, page in list(self.pages.items()):
-            with self._unless_gone(client_id):
-                with page.client.atomic():
-                    page.show(session)
-                page.client.flush()
+        """Show the session on every page, and keep what is drawn and set; runs in a thread, and only one at a time."""
+        self._shown.show(self.told.visible, self.held)
         if self._last is not None:
             self._last.keep(self.told)
-
-    def _hold(self, held: Held) -> None:
-        """Put another frame in the place of the one that is shown."""
-        self._shown, self._pictures = held, Pictures(held.frame)
-        self.panels.hold(held)
-        self._scene.hold(held.frame, self._pictures.television(None, "picture"))
-        for client_id, page in list(self.pages.items()):
-            with self._unless_gone(client_id):
-                page.hold(self._pictures)
-
-    @contextmanager
-    def _unless_gone(self, client_id: int) -> Iterator[None]:
-        """Drop a page that was closed while something was done with it; log what goes wrong with an open one."""
-        with _logged(f"page {client_id} cannot be shown"):
-            try:
-                yield
-            except Exception:
-                if client_id in self.server.get_clients():
-                    raise
-                self.pages.pop(client_id, None)
-
-    def _new_page(self, client: ClientHandle) -> PageView:
-        client.camera.on_update(self._camera_moved)
-        return PageView(
-            client,
-            self._pictures,
-            self.panels,
-            self._scene,
-            lambda event: self._post_from(client.client_id, event),
-            self._tour,
-        )
-
-    def _post_from(self, client_id: int, event: Event | DecisionEvent | PageEvent | Asked) -> None:
-        self.post(FromPage(client_id, event))
 
     async def _page_opened(self, client: ClientHandle) -> None:
         self.post(PageOpened(client))
 
     async def _page_closed(self, client: ClientHandle) -> None:
         self.post(PageClosed(client.client_id))
-
-    async def _camera_moved(self, camera: CameraHandle) -> None:
-        client_id = camera.client.client_id
-        self.post(PageHeard(seconds(), client_id))
-        page = self.pages.get(client_id)
-        if page is not None and page.state.view == "camera":
-            self.post(CameraMoved())
-
-
-@contextmanager
-def _logged(failure: str) -> Iterator[None]:
-    """Log a mistake of the program's own instead of letting it end the console."""
-    try:
-        yield
-    except Exception:
-        log.exception(failure)
 
 
 def _refuse_to_share(verbose: bool = True) -> None:
