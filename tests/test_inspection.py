@@ -264,7 +264,7 @@ def test_a_tool_that_would_hit_something_is_said_in_the_hint(session: Session, r
 
 def assert_blocked_until_overridden(hit: Reconstruction) -> None:
     """What is proposed of it cannot be armed, as it says why; the record has it too."""
-    event = offered(Evidence(0, hit.drawing, hit), "Ann", hit.settings)
+    event = offered(Evidence(0, hit.drawing, hit.settings, hit), "Ann")
     assert isinstance(event, Offered)
     assert event.offer.tool == "mechanical cutter"
     (why,) = event.offer.in_the_way["mechanical cutter"]
@@ -344,7 +344,7 @@ def test_a_contact_is_placed_undone_and_part_of_what_is_decided(
 
 def assert_recorded_and_served_there(moved: Reconstruction, result: Reconstruction) -> None:
     """The place that was chosen is in the digest, in the record and in what the robot is told."""
-    before, after = (offered(Evidence(0, one.drawing, one), "Ann", one.settings) for one in (result, moved))
+    before, after = (offered(Evidence(0, one.drawing, one.settings, one), "Ann") for one in (result, moved))
     assert isinstance(before, Offered)
     assert isinstance(after, Offered)
     assert before.offer.digest != after.offer.digest

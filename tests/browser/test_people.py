@@ -58,8 +58,13 @@ def newcomer(scene: Simulated, browser: Browser, tmp_path_factory: pytest.TempPa
 
 def tab(operator: Operator, name: str) -> None:
     one = operator.page.get_by_role("tab", name=name)
-    one.click(force=True)  # without it, two frames of software WebGL are waited for
-    expect(one).to_have_attribute("aria-selected", "true")
+
+    def chosen() -> bool:
+        """Clicks until it is, as tabs may move with the screen; no frame of software WebGL is waited for."""
+        one.click(force=True)
+        return one.get_attribute("aria-selected") == "true"
+
+    operator.until(chosen, f"{name} is open")
 
 
 def at_station(operator: Operator, number: int) -> None:
