@@ -18,11 +18,12 @@ from app.browsing import (
     ReplayAsked,
     ReportAsked,
 )
-from app.history_text import entry_html, head_html, list_html
+from app.history_text import entry_html, head_html, list_html, typed_in
 from app.record.history import Listing
 from app.report.exports import ExportFormat
 from app.session import Session
-from app.showing import in_session_unit, set_to
+from app.showing import set_to
+from app.units import in_unit
 
 NEWER, OLDER = "Newer", "Older"
 SAVE = "Save"
@@ -77,7 +78,7 @@ class HistoryPanel:
         """Bring it up to date, sending only what has changed."""
         self._shown = (looked, browsing)
         listing = looked.listing
-        set_to(self._list, "content", in_session_unit(list_html(listing, looked.problem), session))
+        set_to(self._list, "content", in_unit(list_html(listing, looked.problem), session.unit, typed_in(listing)))
         set_to(self._head, "content", head_html(listing.head))
         numbers = tuple(str(line.number) for line in listing.lines)
         if numbers and self._numbers.options != numbers:

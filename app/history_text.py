@@ -33,6 +33,11 @@ def entry_html(line: Line | None, told: str, good: bool) -> str:
     )
 
 
+def typed_in(listing: Listing) -> set[str]:
+    """What people have typed, of which nothing may be told in another unit."""
+    return {escape(text) for line in listing.lines for text in (line.said, line.tool, line.who) if text}
+
+
 def head_html(head: Head) -> str:
     """What the record ends with."""
     return (

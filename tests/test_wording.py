@@ -138,6 +138,7 @@ def test_a_tool_that_is_not_sure_is_said_in_amber_with_what_settles_it(
 def test_the_chart_has_a_band_where_the_profile_has_an_interval(
     result: Reconstruction, monkeypatch: pytest.MonkeyPatch
 ) -> None:
+    monkeypatch.setattr(charts, "radius_chart", charts.radius_chart.__wrapped__)
     without = charts.radius_chart(result, 0)
     monkeypatch.setattr(charts, "answer_of", sure_answer)
     along, high, low, fitted, *_ = chart = charts.radius_chart(result, 0)

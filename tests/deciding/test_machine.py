@@ -107,7 +107,7 @@ class Machine(RuleBasedStateMachine):
         assert page == after.control.holder
         assert page in self.came, "the page that armed it is open"
         assert now.since >= self.came[page], "and has been since"
-        assert after.now - now.since <= LIMITS.arm_s
+        assert after.now <= now.since + LIMITS.arm_s
         assert after.case.offer.digest == self.digest
         assert after.fault is None
         assert (page, after.case.number) in self.pictured
@@ -124,7 +124,7 @@ class Machine(RuleBasedStateMachine):
         assert (now.how == "overridden") == (after.case.override is not None)
         since = before.case.stage.since
         assert (event.page, event.number, since) in self.presses
-        assert event.at - since <= LIMITS.arm_s, "within its time"
+        assert event.at <= since + LIMITS.arm_s, "within its time"
         run = [event.at]
         for by, number, then in reversed(self.ticks[:-1]):
             if (by, number) != (event.page, event.number) or run[-1] - then > LIMITS.hold_gap_s or then < since:
