@@ -11,12 +11,12 @@ from rotrecon.arrays import Floats
 from rotrecon.camera import inverse, transform
 from rotrecon.frame import View
 from rotrecon.outcome import Fit
-from rotrecon.photometry.agreement import Agreement
+from rotrecon.photometry.agreement import Agreement, shades_of
 from rotrecon.photometry.carrying import Carrier
 from rotrecon.photometry.outlines import CarriedOutline
 from rotrecon.photometry.refinement import Refinement, others_of, refined, sought, weighed
 from rotrecon.photometry.splines import SCIPY, SUPPORT_PX, Spline, spline_of
-from rotrecon.photometry.visible import clear_of, seen_too
+from rotrecon.photometry.visible import clear_of, outward, seen_too
 from rotrecon.rays.fitting import Outline
 from rotrecon.rays.hypotheses import Held
 from rotrecon.rays.robust import Ranked
@@ -55,7 +55,8 @@ def agreement_of(surface: Surface) -> Agreement:
     other = Spline(SCIPY.spline_filter(painted(surface, CAMERA, CARRIER.T_view_reference)), np.zeros(2))
     usable &= other.within(CARRIER.carried(rays, surface.trace(rays).depth_m)[0])
     grey = painted(surface, CAMERA, np.eye(4)).ravel()[usable]
-    return Agreement(rays[:, usable], grey, other, CARRIER)
+    shades = shades_of(outward(surface, (rays * surface.trace(rays).depth_m)[:, usable]))
+    return Agreement(rays[:, usable], grey, shades, other, CARRIER)
 
 
 def refinement_of(one: Pair, start: Surface, frame=None) -> Refinement:
@@ -128,7 +129,8 @@ def test_the_derivatives_of_brightness_are_its_differences(surface):
     columns = agreement.predict(surface).columns
     for number, unit in enumerate(np.eye(len(surface.units(1.0)))):
         there, back = (agreement.predict(surface.stepped(sign * 1e-6 * unit)).residual for sign in (1, -1))
-        assert np.allclose(columns[number], (back - there) / 2e-6, atol=0.02 * np.abs(columns[number]).max())
+        # which leave out that the weights of gain, offset and shades change too
+        assert np.allclose(columns[number], (back - there) / 2e-6, atol=0.04 * np.abs(columns[number]).max())
 
 
 @pytest.mark.parametrize("surface", SURFACES, ids=["cylinder", "cone", "ball"])

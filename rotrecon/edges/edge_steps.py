@@ -1,9 +1,10 @@
 """Where the object's colour gives way to the background's along profiles across an outline, to a fraction of a pixel.
 
-Either side is a level that changes slowly along the outline and linearly across it, and a texture: a Gaussian process
-whose covariance in colour and whose correlation across are those seen beside the edge. A pixel of the edge shows both
-in proportion to the area they cover. The step is where all that is most likely, so that a texture is not taken for an
-edge and the more even side says more of where it ends.
+Either side is a level that changes slowly along the outline, and a texture. Across it the background changes linearly,
+the object as Lambert's law has it for something turned. A texture is a Gaussian process whose covariance in colour and
+whose correlation across are those seen beside the edge. A pixel of the edge shows both sides in proportion to the area
+they cover. The step is where all that is most likely, so that a texture is not taken for an edge and the more even side
+says more of where it ends.
 """
 
 from collections.abc import Sequence
@@ -17,8 +18,8 @@ from rotrecon.edges.edge_lines import Line, Stretch, bell, filtered
 
 CLEAR_PX = 2.0
 """Distance from the edge where a colour is one side's alone, in pictures that are not blurred."""
-CLEAR_BLURS = 2.5
-"""The same in pictures that are, in standard deviations of the blur: 1 % of the other side is left."""
+CLEAR_BLURS = 3.0
+"""The same in pictures that are, in standard deviations of the blur: 0.1 % of the other side is left."""
 LEAST_ZONE_PX = 1.0
 """Least width of a zone where a colour is one side's alone: with less, there is no telling how it changes."""
 LEVEL_PX = 15.0
@@ -35,6 +36,11 @@ NOISE = 0.005
 """Noise of linear light, of 1: an 8 bit camera's, in the middle of its range."""
 COLOUR_FLOOR = 1e-6
 """Least variance of a colour, so that a perfectly even side has one."""
+BENT_SHARE = 0.5
+"""Of an even surface's light, how much changes from its middle to its limb in the root of the distance: about as much
+as comes from a lamp beside the camera."""
+SHADING_NOISE = NOISE / 3
+"""What a mean along the outline errs by: blur and Lambert's law leave that much."""
 CORRELATION = (0.05, 0.9)
 """Bounds of a texture's correlation over one pixel: estimates from few samples beyond them mean nothing."""
 ALONG_PX = 4.0
@@ -63,6 +69,10 @@ class Profiles:
     """(T,) signed distance from the line, outward; 1 px apart where that is clear of the edge."""
     light: Floats
     """(N, T, 3) linear light."""
+    deep_px: Floats
+    """(D,) distances farther inside, which tell how the object is shaded."""
+    deep: Floats
+    """(N, D, 3) linear light there."""
 
 
 @dataclass(frozen=True, eq=False)
@@ -78,6 +88,8 @@ class Steps:
     mean_sigma_px: float
     """Standard error of the mean offset."""
     blur_px: float
+    line_px: Floats
+    """(N,) the smooth line through most of them, from the predicted points."""
 
     def __post_init__(self) -> None:
         freeze(self)
@@ -94,12 +106,53 @@ class _Side:
 
 
 @dataclass(frozen=True, eq=False)
+class _Shading:
+    """How a turned surface's light changes toward its limb, the same all along the stretch.
+
+    Light by Lambert's law is linear in the surface's normal, which turns away with the root of the distance from the
+    limb: a line and that root are fitted to what is seen between the zone beside the edge and the object's middle.
+    """
+
+    across_px: Floats
+    """(T,) where it is wanted."""
+    zone: Bools
+    """(T,) where levels are taken."""
+    half_width_px: float
+    seen_px: Floats
+    """(D,) where it was seen."""
+    light: Floats
+    """(D, 3) that was seen there."""
+    doubt: Floats
+    """(3,) variance of what was seen, over that of the root's amount that is expected."""
+
+    def at(self, place_px: Floats) -> Floats:
+        """Light (K, T, 3) over the mean of the zone, with the limb at one of K places."""
+        line = np.stack([np.ones(len(self.seen_px)), self.seen_px], axis=1)
+        fit = np.linalg.pinv(line)
+        bent = self._bent(place_px, self.seen_px)
+        own = bent - bent @ fit.T @ line.T
+        amount = (own @ self.light) / ((own**2).sum(axis=1)[:, None] + self.doubt)
+        slope = fit[1] @ self.light - (bent @ fit[1])[:, None] * amount
+        shape = self._bent(place_px, self.across_px)[..., None] * amount[:, None]
+        shape = shape + self.across_px[:, None] * slope[:, None]
+        return shape - shape[:, self.zone].mean(axis=1, keepdims=True)
+
+    def _bent(self, place_px: Floats, across_px: Floats) -> Floats:
+        """Cosine (K, D) of the surface's angle to the picture's plane across the stretch."""
+        depth = ((place_px[:, None] - across_px) / self.half_width_px).clip(0, 1)
+        return np.sqrt(depth * (2 - depth))
+
+
+@dataclass(frozen=True, eq=False)
 class _Model:
     across_px: Floats
     seen: Floats
     """(3, T, N)"""
     inner: _Side
     outer: _Side
+    shading: _Shading
+    channels: Floats
+    """(3, 3) of colours."""
     noise: Floats
     """(3,) variance."""
     contrast: Floats
@@ -114,6 +167,7 @@ class _Model:
         covariance += self.noise[:, None, None] * np.eye(len(self.across_px))
         root = np.linalg.cholesky(covariance)
         step = self.inner.level[..., ::every] - self.outer.level[..., ::every]
+        step = step + (self.shading.at(place_px) @ self.channels).transpose(0, 2, 1)[..., None]
         rest = (self.seen - self.outer.level)[..., ::every] - inner[..., None] * step
         white = np.linalg.inv(root) @ rest
         spread = np.log(np.diagonal(root, axis1=-2, axis2=-1)).sum(axis=-1)
@@ -138,29 +192,47 @@ def _model(profiles: Profiles, clear_px: float) -> _Model:
     across, light = profiles.across_px, profiles.light
     clear = min(clear_px, -float(across[0]) - LEAST_ZONE_PX)
     along_rows = LEVEL_PX / profiles.stretch.spacing_px
-    inner_level, inner_texture = _level(across, light, across <= -clear, along_rows)
-    outer_level, outer_texture = _level(across, light, across >= clear, along_rows)
+    shading = _shading(profiles, across <= -clear)
+    shape = shading.at(np.zeros(1))[0]
+    inner_level, inner_texture = _level(light, across <= -clear, shape, along_rows)
+    outer_level, outer_texture = _level(light, across >= clear, _slope(across, light, across >= clear), along_rows)
     # the channels in which both textures are uncorrelated
     whiten = np.linalg.inv(np.linalg.cholesky(_covariance(outer_texture)))
     ratio, turn = np.linalg.eigh(whiten @ _covariance(inner_texture) @ whiten.T)
-    channels = whiten.T @ turn
+    channels = np.asarray(whiten.T @ turn, dtype=np.float64)
     noise = NOISE**2 * (channels**2).sum(axis=0)
-    inner = _Side(_planes(inner_level @ channels), _process(across, inner_texture @ channels, ratio))
+    inner = _Side(_planes((inner_level - shape) @ channels), _process(across, inner_texture @ channels, ratio))
     outer = _Side(_planes(outer_level @ channels), _process(across, outer_texture @ channels, np.ones(3)))
     at_edge = int(np.abs(across).argmin())
     difference = inner.level[:, at_edge] - outer.level[:, at_edge]
     contrast = np.sqrt((difference**2 / (ratio + 1 + noise)[:, None]).sum(axis=0))
-    return _Model(across, _planes(light @ channels), inner, outer, noise, contrast)
+    return _Model(across, _planes(light @ channels), inner, outer, shading, channels, noise, contrast)
 
 
-def _level(across_px: Floats, light: Floats, zone: Bools, along_rows: float) -> tuple[Floats, Floats]:
-    """A side's level (N, T, 3), carried on over the edge, and its texture (N, Z, 3) where it is alone."""
-    seen = light[:, zone]
+def _level(light: Floats, zone: Bools, shape: Floats, along_rows: float) -> tuple[Floats, Floats]:
+    """A side's level (N, T, 3), which has a shape (T, 3) across, and its texture (N, Z, 3) where it is alone."""
+    level = filtered(light[:, zone].mean(axis=1), bell(along_rows))[:, None] + shape
+    return level, light[:, zone] - level[:, zone]
+
+
+def _slope(across_px: Floats, light: Floats, zone: Bools) -> Floats:
+    """What (T, 3) a background's light changes by across, carried on from the zone where it is alone."""
     distance = across_px - across_px[zone].mean()
-    mean = seen.mean(axis=1)
-    slope = np.einsum("nzc,z->c", seen - mean[:, None], distance[zone]) / (len(seen) * (distance[zone] ** 2).sum())
-    level = filtered(mean, bell(along_rows))[:, None] + distance[:, None] * slope
-    return level, seen - level[:, zone]
+    mean = light[:, zone].mean(axis=0)
+    return distance[:, None] * (distance[zone] @ mean / (distance[zone] ** 2).sum())
+
+
+def _shading(profiles: Profiles, zone: Bools) -> _Shading:
+    across = np.concatenate([profiles.deep_px, profiles.across_px[zone]])
+    seen = np.concatenate([profiles.deep, profiles.light[:, zone]], axis=1)
+    light = np.median(seen, axis=0)
+    independent = max(len(seen) * profiles.stretch.spacing_px / CORRELATED_PX, 1.0)
+    expected = BENT_SHARE * np.abs(light).mean(axis=0)
+    variance = (seen - light).var(axis=(0, 1)) / independent + SHADING_NOISE**2
+    # on what is too narrow to be seen farther inside, blur would pass for shading
+    doubt = variance / np.maximum(expected**2, COLOUR_FLOOR) if len(profiles.deep_px) else np.full(3, np.inf)
+    half_width_px = float(np.median(profiles.stretch.half_width_px))
+    return _Shading(profiles.across_px, zone, half_width_px, across, light, doubt)
 
 
 def _covariance(texture: Floats) -> Floats:
@@ -216,13 +288,14 @@ def _steps(profiles: Profiles, model: _Model, blur_px: float) -> Steps:
     found &= np.abs(place - line) < OFF_PX
     if not found.any():
         nothing = np.full(len(place), np.nan)
-        return Steps(nothing, nothing, model.contrast, np.inf, blur_px)
+        return Steps(nothing, nothing, model.contrast, np.inf, blur_px, profiles.line.offset_px)
     total = float(weight[found].sum())
     scatter = _scatter(np.where(found, weight * (place - line), 0.0), round(CORRELATED_PX / spacing)) / total**2
     scatter += _disagreement(by_channel[:, :, found], line[found])
     sigma = float(np.sqrt((SYSTEMATIC_SHARE * blur_px) ** 2 + CAUTION**2 * scatter))
     offset = np.where(found, profiles.line.offset_px + place, np.nan)
-    return Steps(offset, sigma * np.sqrt(total / weight), model.contrast, sigma, blur_px)
+    sigmas = sigma * np.sqrt(total / weight)
+    return Steps(offset, sigmas, model.contrast, sigma, blur_px, profiles.line.offset_px + line)
 
 
 def _line(shapes: Floats, place: Floats, weight: Floats) -> Floats:

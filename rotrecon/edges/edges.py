@@ -9,11 +9,13 @@ from scipy import ndimage  # pyright: ignore[reportMissingTypeStubs]
 
 from rotrecon.arrays import Bools, Bytes, Cloud, Floats, Indices, freeze
 from rotrecon.edges.edge_lines import BEYOND_PX, Line, Stretch, find_line
-from rotrecon.edges.edge_steps import Profiles, find_steps
+from rotrecon.edges.edge_steps import Profiles, Steps, find_steps
 
 ACROSS_PX = np.array([-5, -4, -3, -2, -1.5, -1, -0.5, 0, 0.5, 1, 1.5, 2, 3, 4, 5])
 """Samples across an edge: half a pixel apart where it may be, one where texture is learnt, and no farther off, where
 other things begin."""
+DEEP_PX, SHADED_SHARE = np.arange(-14.0, -5.0), 0.8
+"""Samples farther inside, and up to which share of the half width: they tell how the object is shaded."""
 PROFILE_PX = float(ACROSS_PX[-1])
 LEAST_HALF_WIDTH_PX = 3.5
 """Of an object that has a colour of its own between its edges."""
@@ -27,6 +29,9 @@ RUNNER_UP_SHARE = 0.6
 """Of the support, what a second line may have beside one that is trusted."""
 LEAST_FOUND = 0.6
 """Share of the points with an edge on a line to be trusted."""
+MOVED_PX, MOVES, FARTHEST_PX = 0.2, 6, 2.5
+"""A line farther from its steps is moved onto them, and they are looked for again, so many times at most and no farther
+from where it began."""
 LARGEST_SIGMA_PX = 0.5
 """Of a line to be trusted: more says nothing that depth does not know."""
 
@@ -144,7 +149,7 @@ def find_edges(
         if line.support >= LEAST_SUPPORT and line.runner_up <= RUNNER_UP_SHARE * line.support:
             clear.append((rows, stretch, line))
     found = np.full((3, len(point_px)), np.nan)
-    for (rows, _, line), steps in zip(clear, find_steps(_profiles(crop, clear)), strict=True):
+    for (rows, _, line), steps in zip(clear, _steps(crop, clear), strict=True):
         found[:, rows] = steps.offset_px, steps.sigma_px, steps.contrast
         share = float(np.isfinite(steps.offset_px).mean())
         sides[int(numbers[rows[0]])] = Side(line.support, line.runner_up, share, steps.mean_sigma_px, steps.blur_px)
@@ -164,6 +169,25 @@ def _long_enough(point_px: Floats) -> bool:
     return len(point_px) >= LEAST_POINTS and length >= LEAST_LENGTH_PX
 
 
+def _steps(crop: _Crop, clear: list[tuple[Indices, Stretch, Line]]) -> list[Steps]:
+    """The steps near the lines, looked for again where these turn out to be off: shading is steepest inside a limb."""
+    first_px = [line.offset_px for _, _, line in clear]
+    steps = find_steps(_profiles(crop, clear))
+    for _ in range(MOVES):
+        lines_px = [
+            one.line_px.clip(px - FARTHEST_PX, px + FARTHEST_PX) for one, px in zip(steps, first_px, strict=True)
+        ]
+        moved_px = [np.abs(px - line.offset_px) for px, (_, _, line) in zip(lines_px, clear, strict=True)]
+        if max((float(np.median(px)) for px in moved_px), default=0.0) < MOVED_PX:
+            break
+        clear = [
+            (rows, stretch, replace(line, offset_px=px))
+            for px, (rows, stretch, line) in zip(lines_px, clear, strict=True)
+        ]
+        steps = find_steps(_profiles(crop, clear))
+    return steps
+
+
 def _profiles(crop: _Crop, clear: list[tuple[Indices, Stretch, Line]]) -> list[Profiles]:
     """The colours across the line of every stretch."""
     if not clear:
@@ -171,9 +195,11 @@ def _profiles(crop: _Crop, clear: list[tuple[Indices, Stretch, Line]]) -> list[P
     splines = [SCIPY.spline_filter(LINEAR_LIGHT[crop.image[..., channel]]) for channel in range(3)]
     profiles: list[Profiles] = []
     for _, stretch, line in clear:
-        across = ACROSS_PX[-float(stretch.half_width_px.min()) <= ACROSS_PX]
-        place = stretch.profiles_at(line.offset_px, across)
+        half_width_px = float(stretch.half_width_px.min())
+        across, deep = ACROSS_PX[-half_width_px <= ACROSS_PX], DEEP_PX[-SHADED_SHARE * half_width_px <= DEEP_PX]
+        place = stretch.profiles_at(line.offset_px, np.concatenate([across, deep]))
         at = [place[..., 1], place[..., 0]]
-        light = [SCIPY.map_coordinates(spline, at, order=3, prefilter=False, mode="nearest") for spline in splines]
-        profiles.append(Profiles(stretch, line, across, np.stack(light, axis=-1)))
+        channels = [SCIPY.map_coordinates(spline, at, order=3, prefilter=False, mode="nearest") for spline in splines]
+        light, inside = np.split(np.stack(channels, axis=-1), [len(across)], axis=1)
+        profiles.append(Profiles(stretch, line, across, light, deep, inside))
     return profiles

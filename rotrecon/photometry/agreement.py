@@ -12,6 +12,10 @@ from rotrecon.rays.surfaces import Rays, Surface
 
 BRIGHTNESS_ROUNDS = 2
 """Reweighted rounds for gain and offset: the surface's own rounds go on from there."""
+SHADE_LEVELS = 2.0
+"""Grey levels by which light may come back differently to two cameras: a hundredth of what an 8 bit picture shows."""
+LARGEST_SIGMA = 10.0
+"""Grey levels by which pictures differ at a start."""
 LEAST_SIGMA = 1e-6
 """Grey; of pictures that agree to the last digit."""
 
@@ -33,13 +37,16 @@ class Agreement:
     """Grey values of the reference picture, which the other one has where the surface carries them.
 
     Gain and offset between the pictures are found anew for every surface, and the derivatives are those at the best
-    gain and offset (variable projection, Kaufman 1975).
+    gain and offset (variable projection, Kaufman 1975). So is how the light on it changes with the place it is seen
+    from: no real surface is quite Lambert's, and what shading alone says of a size is off by several percent.
     """
 
     rays: Rays
     """(3, N) of the reference camera."""
     grey: Floats
     """(N,) of its picture, there."""
+    shades: Floats
+    """(T, N) how light that comes back may differ between the views, each of about 1; see `shades_of`."""
     other: Spline
     """The other view's picture."""
     carrier: Carrier
@@ -59,9 +66,11 @@ class Agreement:
         return Prediction(columns - (columns @ weighted.T) @ inverse @ terms, UNSCALED, residual)
 
     def along_rays(self, surface: Surface) -> Change:
-        """Residuals, and how they change with each pixel's own depth."""
+        """Residuals, and how they change with each pixel's own depth by what is no shading."""
         seen, by_depth, px_by_depth = self._seen(surface.trace(self.rays).depth_m)
-        return Change(self._balanced(seen)[0], np.nan_to_num(by_depth), np.nan_to_num(px_by_depth))
+        by_depth, terms = np.nan_to_num(by_depth), np.concatenate([np.ones((1, len(self))), self.shades])
+        shading = by_depth @ terms.T @ np.linalg.pinv(terms @ terms.T, hermitian=True) @ terms
+        return Change(self._balanced(seen)[0], by_depth - shading, np.nan_to_num(px_by_depth))
 
     def _seen(self, depth_m: Floats) -> tuple[Floats, Floats, Floats]:
         """What the other picture shows, and its change and the place's by depth; all (N,)."""
@@ -70,18 +79,30 @@ class Agreement:
         return seen.grey, seen.by_u * by_depth[0] + seen.by_v * by_depth[1], np.hypot(by_depth[0], by_depth[1])
 
     def _balanced(self, seen: Floats) -> tuple[Floats, Floats, Floats, Floats]:
-        """Residual (N,) with gain and offset taken out; their weighted terms (2, N), covariance (2, 2) and terms."""
-        terms = np.stack([self.grey - self.grey.mean(), np.ones(len(self.grey))])
-        weight = np.ones(len(self.grey))
+        """Residual (N,) without gain, offset and shades; their weighted terms (2 + T, N), covariance and terms."""
+        terms = np.concatenate([[self.grey - self.grey.mean(), np.ones(len(self.grey))], self.shades])
+        held = np.concatenate([np.zeros(2), np.full(len(self.shades), SHADE_LEVELS**-2)])
+        weight, sigma = np.ones(len(self.grey)), LARGEST_SIGMA
         weighted, residual = terms, seen
-        inverse: Floats = np.eye(2)
+        inverse: Floats = np.eye(len(terms))
         for _ in range(BRIGHTNESS_ROUNDS + 1):
             weighted = terms * weight
-            inverse = np.asarray(np.linalg.pinv(weighted @ terms.T, hermitian=True), dtype=np.float64)
+            information = weighted @ terms.T + np.diag(held * sigma**2)
+            inverse = np.asarray(np.linalg.pinv(information, hermitian=True), dtype=np.float64)
             residual = (inverse @ (weighted @ seen)) @ terms - seen
-            weight = tukey(residual / max(robust_scale(residual), LEAST_SIGMA))[1]
+            sigma = max(robust_scale(residual), LEAST_SIGMA)
+            weight = tukey(residual / sigma)[1]
         return residual, weighted, inverse, terms
 
     def chosen(self, index: Indices | Bools) -> "Agreement":
         """Some of the pixels."""
-        return replace(self, rays=self.rays[:, index], grey=self.grey[index])
+        return replace(self, rays=self.rays[:, index], grey=self.grey[index], shades=self.shades[:, index])
+
+
+def shades_of(normals: Floats) -> Floats:
+    """How light may vary (8, N) over normals (3, N): the spherical harmonics of first and second order.
+
+    Those are all that a matt surface gives back of any light, to 1 % (Basri and Jacobs 2003).
+    """
+    x, y, z = normals
+    return np.stack([x, y, z, x * y, y * z, z * x, x * x - y * y, 3 * z * z - 1])

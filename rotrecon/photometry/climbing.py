@@ -1,12 +1,13 @@
 """A surface moved from a start until the pictures of several cameras agree over it, outlines in them included."""
 
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 
 import numpy as np
 
 from rotrecon.arrays import Bools, Floats
 from rotrecon.photometry.matches import Match, Other, matches_of
 from rotrecon.photometry.outlines import CarriedOutline, Edge, outline_in
+from rotrecon.photometry.sharpening import textured_share
 from rotrecon.photometry.visible import clear_of, shown
 from rotrecon.rays.fitting import TUKEY, Loss, Measurement, cauchy, refine, tukey
 from rotrecon.rays.hypotheses import Scene
@@ -24,6 +25,10 @@ SOUGHT_AGAIN_PX = 1.0
 """A surface whose outline moved by more may have been given the wrong edges."""
 DEPTH_SHARE = 0.5
 """Of a surface's pixels, how many matched depth must agree with it to have a say in which they are."""
+PLAIN = 0.05
+"""Share of a surface's pixels with texture below which its outline is believed, and brightness hardly."""
+DISTRUST = 5.0
+"""By how much larger the error of brightness is taken there: the light near limbs is not what pixels make of it."""
 NOTHING = TUKEY**2 / 6
 """Cost of a measurement that a surface does not explain."""
 
@@ -81,6 +86,11 @@ def climb(start: Surface, free: Bools, sigma: float, scene: Scene, others: tuple
             return None
         weighting = [*(match.weighting for match in matches), *((1.0, 1.0) for _ in edges)]
         surface = refine(surface, measurements, weighting, loss, free, units, ITERATIONS).surface
+    if edges and matches and textured_share(surface, patch, pixels, matches) < PLAIN:
+        matches = tuple(replace(match, sigma=DISTRUST * match.sigma) for match in matches)
+        weighting = [*(match.weighting for match in matches), *((1.0, 1.0) for _ in edges)]
+        measurements = [*(match.agreement for match in matches), *edges]
+        surface = refine(surface, measurements, weighting, tukey, free, units, ITERATIONS).surface
     return Climbed(start, surface, free, pixels, by_depth, matches, tuple(edges))
 
 

@@ -6,10 +6,10 @@ import numpy as np
 
 from rotrecon.arrays import Bools, Floats, Indices, freeze
 from rotrecon.frame import View
-from rotrecon.photometry.agreement import LEAST_SIGMA, Agreement
+from rotrecon.photometry.agreement import LEAST_SIGMA, Agreement, shades_of
 from rotrecon.photometry.carrying import Carrier
 from rotrecon.photometry.splines import smoothed, spline_of
-from rotrecon.photometry.visible import seen_too
+from rotrecon.photometry.visible import outward, seen_too
 from rotrecon.rays.correlation import Likeness, likeness_of
 from rotrecon.rays.fitting import robust_scale
 from rotrecon.rays.patch import Patch
@@ -74,7 +74,9 @@ def _match(surface: Surface, patch: Patch, grey: Floats, among: Bools, other: Ot
     pixels = spread(pixels[spline.within(place_px)], most)
     if len(pixels) < FEWEST_PIXELS:
         return None
-    agreement = Agreement(patch.rays[:, pixels], grey[pixels], spline, other.carrier)
+    rays = patch.rays[:, pixels]
+    shades = shades_of(outward(surface, rays * surface.trace(rays).depth_m))
+    agreement = Agreement(rays, grey[pixels], shades, spline, other.carrier)
     residual = agreement.predict(surface).residual
     sigma = max(robust_scale(residual), LEAST_SIGMA)
     image = np.full(patch.shape, np.nan)

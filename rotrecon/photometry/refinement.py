@@ -35,9 +35,11 @@ DRAWN_SHARE, DRAWN_PX = 0.12, 2.5
 """Half widths may be off the drawing's by this share or so many px before other starts are tried."""
 TEXTURED = 0.3
 """Of an object's pixels, how many must have a depth from the pictures for these to say what shape it has."""
-UNTEXTURED_DOUBT, UNTEXTURED_BALL_DOUBT, FULLY_TEXTURED = 0.015, 0.03, 0.5
+UNTEXTURED_DOUBT, UNTEXTURED_BALL_DOUBT, TEXTURE_HOLDS = 0.015, 0.03, 0.1
 """Standard error of the radius, over the radius, that outline and shading of a plain object leave, and shading alone
 that of a ball; and the share of textured pixels at which nothing of it is left."""
+FULLY_TEXTURED = 0.5
+"""Of an object's pixels, how many must have a depth from the pictures to have been enough to match."""
 ALIKE = 5.0
 """Half a likelihood's logarithm: in a shallow valley of brightness, the end that matched depth led to is held to, for
 its outline was looked for where the object is."""
@@ -176,11 +178,10 @@ def _finished(one: Ranked, fit: RayFit, climbed: Climbed, scene: Scene, *, by_de
     if known.sum() > max(SHARP_SHARE * len(pixels), FEWEST_PIXELS):
         pixels = np.flatnonzero(known).astype(np.int32)
         sight = Sight(guard=float(np.percentile(surface.off_middle(patch.rays[:, pixels]), 95)))
-    if not by_depth:
-        size = fit.size_place
-        doubt = UNTEXTURED_BALL_DOUBT if isinstance(surface, Ball) else UNTEXTURED_DOUBT
-        left_m = doubt * max(1.0 - textured / FULLY_TEXTURED, 0.0) * surface.size_m
-        covariance[size, size] += left_m**2 * climbed.free[size]
+    size = fit.size_place
+    doubt = UNTEXTURED_BALL_DOUBT if isinstance(surface, Ball) else UNTEXTURED_DOUBT
+    left_m = doubt * max(1.0 - textured / TEXTURE_HOLDS, 0.0) * surface.size_m
+    covariance[size, size] += left_m**2 * climbed.free[size]
     residual = predicted(replace(patch, depth_m=depth_m), pixels, surface, sight).residual
     told = {"own_covariance": lambda: covariance, "doubt": 0.0}
     better = replace(fit, surface=surface, pixels=pixels, sight=sight, residual=residual, **told)

@@ -47,6 +47,11 @@ def sharpened(surface: Surface, patch: Patch, among: Bools, matches: tuple[Match
     return depth_m, known, among & agree.ravel()
 
 
+def textured_share(surface: Surface, patch: Patch, among: Bools, matches: tuple[Match, ...]) -> float:
+    """Share of some pixels (N,) of a patch at which the pictures tell a depth near a surface."""
+    return float(sharpened(surface, patch, among, matches)[1].sum() / max(among.sum(), 1))
+
+
 def _windowed(values: Floats, match: Match, shape: tuple[int, int]) -> Floats:
     """Means (h, w) over the window of values (n,) of the pixels of a match."""
     image = np.zeros(shape)

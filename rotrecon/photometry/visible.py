@@ -49,15 +49,17 @@ def seen_too(surface: Surface, rays: Rays, carrier: Carrier) -> Bools:
 
 def _faces(surface: Surface, points: Floats, camera_m: Floats) -> Bools:
     """Which points (3, N) of a surface are seen at no steep incidence from a camera at (3,)."""
+    toward = camera_m[:, None] - points
+    return (outward(surface, points) * toward).sum(axis=0) > STEEPEST * np.sqrt((toward**2).sum(axis=0))
+
+
+def outward(surface: Surface, points: Floats) -> Floats:
+    """Unit normals (3, N) at points (3, N) of a surface, on the side that is seen."""
     offset = points - surface.center_m[:, None]
     if isinstance(surface, Lateral):
         x, y, height = surface.turn @ offset
-        outward = surface.turn.T @ np.stack([x, y, -surface.slope * (surface.radius_m + surface.slope * height)])
-    else:
-        outward = offset
-    toward = camera_m[:, None] - points
-    size = np.sqrt((outward**2).sum(axis=0) * (toward**2).sum(axis=0))
-    return -surface.side * (outward * toward).sum(axis=0) > STEEPEST * size
+        offset = surface.turn.T @ np.stack([x, y, -surface.slope * (surface.radius_m + surface.slope * height)])
+    return -surface.side * offset / np.sqrt((offset**2).sum(axis=0))
 
 
 def _inside(surface: Surface, rays: Rays, focal_px: float) -> Bools:
