@@ -42,7 +42,7 @@ class Told:
     """What has come of something that a page has asked for; `good` where numbers are the same."""
 
     pages: tuple[int, ...]
-    number: int | None
+    number: int
     text: str
     good: bool = False
 
@@ -59,7 +59,7 @@ class Exported:
 
 @dataclass(frozen=True, eq=False)
 class Fetched:
-    """Frame and drawing of an entry, or those that the console was started with."""
+    """Frame and drawing of an entry."""
 
     page: int
     held: Held
@@ -77,9 +77,8 @@ Posted = Listed | Told | Exported | Fetched
 class Archive:
     """Everything but what begins with `_read` runs in the console's event loop; each page waits for one thing."""
 
-    def __init__(self, record: Record | None, first: Held, post: Callable[[Posted], None]) -> None:
-        """`first` is what the console was started with."""
-        self._record, self._first, self._post = record, first, post
+    def __init__(self, record: Record | None, post: Callable[[Posted], None]) -> None:
+        self._record, self._post = record, post
         self._history = None if record is None else History(record)
         self._listed: dict[int, tuple[Wanted, int]] = {}
         self._written = self._calm = 0
@@ -151,9 +150,7 @@ class Archive:
             return Told((page,), asked.number, UNKNOWN)
 
     def _answered(self, page: int, asked: Asked, veiled: bool) -> Posted:
-        if isinstance(asked, OpeningAsked) and asked.number is None:
-            return Fetched(page, self._first, facts_of(self._first.frame), ObjectDrawing())
-        if self._record is None or self._history is None or asked.number is None:
+        if self._record is None or self._history is None:
             return Told((page,), asked.number, NO_RECORD)
         if veiled and self._history.line(asked.number).kind not in NAMED:
             return Told((page,), asked.number, VEILED)
@@ -164,8 +161,8 @@ class Archive:
             case ReportAsked(number, format_):
                 content = export_entry(self._record, number, format_)
                 return Exported((page,), number, file_name(number, format_), content)
-            case OpeningAsked():
-                evidence = evidence_of(self._record, self._record.entry(asked.number))
-                frame, name = evidence.frame, f"Entry {asked.number} of the record"
-                held = Held(frame, name, Capture(name, recorded=frame), entry=asked.number)
+            case OpeningAsked(number):
+                evidence = evidence_of(self._record, self._record.entry(number))
+                frame, name = evidence.frame, f"Entry {number} of the record"
+                held = Held(frame, name, Capture(name, recorded=frame), entry=number)
                 return Fetched(page, held, facts_of(frame), drawn_as(evidence.drawing))

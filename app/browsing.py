@@ -67,9 +67,9 @@ class ReportAsked:
 
 @dataclass(frozen=True)
 class OpeningAsked:
-    """Frame and drawing of an entry are to be what is shown, or by None again the scene that was opened first."""
+    """Frame and drawing of an entry are to be what is shown."""
 
-    number: int | None
+    number: int
 
 
 Browsed = ListFiltered | ListTurned | EntryChosen

@@ -40,6 +40,7 @@ from app.page_view import BRAND_COLOR, PageView
 from app.pages import Pages
 from app.panels import Panels
 from app.record.store import Record
+from app.reopening import BroughtBack
 from app.session import Done, Session, step
 from rotrecon.capture import Capture
 from rotrecon.frame import Frame
@@ -96,7 +97,7 @@ class Console:
         self.told = self.session
         """What pages and robots are told, all of it on disk; read it from any thread."""
         self._name_of = name_of
-        self._heartbeat, self._archive = Heartbeat(deciding.silent_s), Archive(record, held, self.post)
+        self._heartbeat, self._archive = Heartbeat(deciding.silent_s), Archive(record, self.post)
         self._desk, self._newcomers = Desk(record, self.post), Newcomers(self.post)
         self._measurements = Measurements(self.post)
         self._host, self._port, self._cloud_points = host, port, cloud_points
@@ -229,7 +230,7 @@ class Console:
                 self.session = step(self.session, PageHeard(seconds(), client_id))
                 if isinstance(event, Event):
                     self.session = step(self.session, Done(client_id, event))
-                elif isinstance(event, DecisionEvent):
+                elif isinstance(event, DecisionEvent | BroughtBack):
                     self.session = step(self.session, event)
                 elif isinstance(event, Asked):
                     self._archive.ask(client_id, event, self.session.decision.veiled)

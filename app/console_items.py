@@ -12,6 +12,7 @@ from app.events import Event, Reconstructed
 from app.held import Newer
 from app.newer_steps import NewerPrepared, NewerReady, NewerUnusable
 from app.page import PageEvent
+from app.reopening import BroughtBack
 
 
 @dataclass(frozen=True)
@@ -32,7 +33,7 @@ class CameraMoved:
 @dataclass(frozen=True)
 class FromPage:
     client_id: int
-    event: Event | DecisionEvent | PageEvent | Asked
+    event: Event | DecisionEvent | PageEvent | Asked | BroughtBack
 
 
 @dataclass(frozen=True)

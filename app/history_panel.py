@@ -18,8 +18,10 @@ from app.browsing import (
     ReplayAsked,
     ReportAsked,
 )
+from app.clock import seconds, wall_s
 from app.history_text import entry_html, head_html, list_html, typed_in
 from app.record.history import Listing
+from app.reopening import BroughtBack
 from app.report.exports import ExportFormat
 from app.session import Session
 from app.showing import set_to
@@ -53,7 +55,9 @@ class Looked:
 class HistoryPanel:
     """A fixed number of controls; the list stands in one of them."""
 
-    def __init__(self, client: ClientHandle, tab: GuiTabHandle, post: Callable[[Browsed | Asked], None]) -> None:
+    def __init__(
+        self, client: ClientHandle, tab: GuiTabHandle, post: Callable[[Browsed | Asked | BroughtBack], None]
+    ) -> None:
         self._gui, self._page, self._post = client.gui, client.client_id, post
         self._shown: tuple[Looked, Browsing] = (Looked(), Browsing())
         with tab:
@@ -65,14 +69,14 @@ class HistoryPanel:
             self._entry = self._gui.add_html("")
             self._do = self._gui.add_button_group("This entry", tuple(ACTS), visible=False)
             self._format = self._gui.add_dropdown("Save as", tuple(FORMATS), visible=False)
-            self._back = self._gui.add_button("Back to the scene opened first", color="gray", visible=False)
+            self._back = self._gui.add_button("Back to what was open before", color="gray", visible=False)
             self._head = self._gui.add_html("")
         shown.on_update(self._doing(lambda value: ListFiltered(shown=value)))
         text.on_update(self._doing(lambda value: ListFiltered(text=value)))
         turn.on_click(self._doing(self._turned))
         self._numbers.on_click(self._doing(lambda value: EntryChosen(int(value))))
         self._do.on_click(self._doing(self._of_chosen))
-        self._back.on_click(self._doing(lambda _: OpeningAsked(None)))
+        self._back.on_click(self._doing(lambda _: BroughtBack(seconds(), self._page, wall_s())))
 
     def show(self, session: Session, looked: Looked, browsing: Browsing) -> None:
         """Bring it up to date, sending only what has changed."""
@@ -90,7 +94,7 @@ class HistoryPanel:
         for part in (self._do, self._format):
             set_to(part, "visible", chosen is not None and chosen.answer is not None)
         holds = session.decision.control.holder == self._page
-        set_to(self._back, "visible", holds and session.entry is not None)
+        set_to(self._back, "visible", holds and session.left is not None)
 
     def _turned(self, way: str) -> Browsed | None:
         looked, _ = self._shown
@@ -104,7 +108,7 @@ class HistoryPanel:
             return None
         return ReportAsked(browsing.chosen, FORMATS[self._format.value]) if act == SAVE else ACTS[act](browsing.chosen)
 
-    def _doing(self, event_of: Callable[[Any], Browsed | Asked | None]) -> Any:
+    def _doing(self, event_of: Callable[[Any], Browsed | Asked | BroughtBack | None]) -> Any:
         """A callback that posts the event a value stands for, when this page and not the program has set it."""
 
         async def done(event: GuiEvent[Any]) -> None:

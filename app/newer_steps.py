@@ -93,6 +93,7 @@ def on_frame(session: Session, held: Held, opened: FrameOpened) -> Session:
         session,
         held=held,
         taking=None,
+        left=None,
         size_px=held.size_px,
         preview=None,
         drag="none" if session.drag == "none" else "cancelled",

@@ -37,6 +37,7 @@ from app.page_panels import PagePanels
 from app.panels import Panels
 from app.pictures import Pictures
 from app.pointer import PixelFinder
+from app.reopening import BroughtBack
 from app.scene_view import SceneView
 from app.session import Notice, Session
 from app.showing import in_session_unit
@@ -57,7 +58,7 @@ class PageView:
         pictures: Pictures,
         shared: Panels,
         scene: SceneView,
-        post: Callable[[Event | DecisionEvent | PageEvent | Asked], None],
+        post: Callable[[Event | DecisionEvent | PageEvent | Asked | BroughtBack], None],
         tour: bool = False,
     ) -> None:
         self.client, self.state = client, PageState(tour=0 if tour else None)

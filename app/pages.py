@@ -16,6 +16,7 @@ from app.page import PageEvent
 from app.page_view import PageView
 from app.panels import Panels
 from app.pictures import Pictures
+from app.reopening import BroughtBack
 from app.scene_view import SceneView
 from app.session import Session
 
@@ -95,7 +96,7 @@ class Pages:
             self._tour,
         )
 
-    def _post_from(self, client_id: int, event: Event | DecisionEvent | PageEvent | Asked) -> None:
+    def _post_from(self, client_id: int, event: Event | DecisionEvent | PageEvent | Asked | BroughtBack) -> None:
         self._post(FromPage(client_id, event))
 
     async def _camera_moved(self, camera: CameraHandle) -> None:

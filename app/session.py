@@ -10,7 +10,7 @@ from app.drawing_steps import drawn_on
 from app.events import DrawingEvent, Event, PageLeft, Refused, SettingTyped, UnitChosen
 from app.newer_steps import NewerEvent, with_newer
 from app.object_drawing import with_axis
-from app.reopening import OpenedAgain, opened_again
+from app.reopening import Reopening, with_reopened
 from app.session_state import Measured as Measured
 from app.session_state import Notice as Notice
 from app.session_state import Session as Session
@@ -29,7 +29,7 @@ class Done:
     event: Event
 
 
-def step(session: Session, event: Event | DecisionEvent | NewerEvent | OpenedAgain | Done) -> Session:
+def step(session: Session, event: Event | DecisionEvent | NewerEvent | Reopening | Done) -> Session:
     """The session after an event; an event that makes no sense leaves it as it is."""
     if isinstance(event, Done):
         why = no_control(session.decision, event.page)
@@ -40,8 +40,8 @@ def step(session: Session, event: Event | DecisionEvent | NewerEvent | OpenedAga
         return _decided(session, event)
     if isinstance(event, NewerEvent):
         return with_newer(session, event)
-    if isinstance(event, OpenedAgain):
-        return opened_again(session, event)
+    if isinstance(event, Reopening):
+        return with_reopened(session, event)
     if isinstance(event, SettingTyped | UnitChosen):
         return _bound(session, set_to(session, event))
     return _bound(session, _drawn(session, event))

@@ -5,6 +5,7 @@ from typing import Literal
 
 from app.adjustable import Chosen
 from app.deciding.states import Deciding
+from app.deciding.watchdog import FrameFacts
 from app.events import Refused
 from app.held import Held, Newer, Taking
 from app.object_drawing import ObjectDrawing, Part, Pixel
@@ -36,6 +37,16 @@ class Notice:
     revision: int
     title: str
     text: str
+
+
+@dataclass(frozen=True)
+class Left:
+    """What was there before an entry of the record was opened."""
+
+    held: Held
+    facts: FrameFacts
+    objects: Objects
+    selected: int
 
 
 @dataclass(frozen=True)
@@ -74,6 +85,8 @@ class Session:
     """The latest that has come since, and waits to be taken."""
     taking: Taking | None = None
     """The one that is being made the held frame."""
+    left: Left | None = None
+    """What an entry of the record was opened instead of, while one is."""
 
     @property
     def chosen(self) -> Chosen:

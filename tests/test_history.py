@@ -14,6 +14,7 @@ from hypothesis import strategies as st
 from app.archive import VEILED, Archive, Exported, Fetched, Listed, Posted, Told
 from app.browsing import Asked, Browsing, EntryChosen, ListFiltered, ListTurned, OpeningAsked, ReplayAsked, ReportAsked
 from app.deciding.events import ControlTaken, PageCame
+from app.deciding.watchdog import FrameFacts
 from app.held import Held
 from app.history_text import entry_html, head_html, list_html
 from app.newer_frames import facts_of
@@ -24,7 +25,7 @@ from app.record.entries import Entry, EntryKind
 from app.record.evidence import proposal
 from app.record.history import LINES, History, Line, Listing, Wanted
 from app.record.store import Record
-from app.reopening import OpenedAgain
+from app.reopening import BroughtBack, OpenedAgain
 from app.session import Session, step
 from rotrecon.camera import PinholeCamera
 from rotrecon.capture import Capture
@@ -152,12 +153,12 @@ def test_a_page_filters_turns_and_chooses() -> None:
     assert browsed(EntryChosen(4)).chosen == 4
 
 
-def asked(record: Record | None, frame, *events: Asked, veiled: bool = False) -> list[Posted]:
+def asked(record: Record | None, *events: Asked, veiled: bool = False) -> list[Posted]:
     """What an archive posts."""
 
     async def run() -> list[Posted]:
         posted: list[Posted] = []
-        archive = Archive(record, Held(frame, "a pipe", Capture("a pipe", recorded=frame)), posted.append)
+        archive = Archive(record, posted.append)
         for event in events:
             archive.ask(PAGE, event, veiled)
         while archive.busy:
@@ -168,23 +169,19 @@ def asked(record: Record | None, frame, *events: Asked, veiled: bool = False) ->
 
 
 def test_an_entry_is_computed_again_saved_and_fetched(record: Record, result: Reconstruction) -> None:
-    (told,) = asked(record, result.frame, ReplayAsked(3))
+    (told,) = asked(record, ReplayAsked(3))
     assert isinstance(told, Told)
     assert told.good
     assert "numbers are the same" in told.text
-    (report,) = asked(record, result.frame, ReportAsked(3, "html"))
+    (report,) = asked(record, ReportAsked(3, "html"))
     assert isinstance(report, Exported)
     assert report.name == "rotrecon-3.html"
     assert b"Confirmed" in report.content
-    (fetched,) = asked(record, result.frame, OpeningAsked(3))
+    (fetched,) = asked(record, OpeningAsked(3))
     assert isinstance(fetched, Fetched)
     assert np.array_equal(fetched.held.frame.points_m, result.frame.points_m, equal_nan=True)
     assert fetched.drawn.complete == result.drawing
-    (first,) = asked(None, result.frame, OpeningAsked(None))
-    assert isinstance(first, Fetched)
-    assert first.held.frame is result.frame
-    assert (first.held.entry, fetched.held.entry) == (None, 3)
-    assert first.drawn == ObjectDrawing()
+    assert fetched.held.entry == 3
 
 
 def test_what_cannot_be_done_with_an_entry_is_said(record: Record, result: Reconstruction) -> None:
@@ -193,13 +190,13 @@ def test_what_cannot_be_done_with_an_entry_is_said(record: Record, result: Recon
         ((OpeningAsked(5),), "is about no measurement"),
         ((ReplayAsked(3), ReplayAsked(3)), "One thing after the other"),
     ):
-        first, *_ = asked(record, result.frame, *events)
+        first, *_ = asked(record, *events)
         assert isinstance(first, Told)
         assert why in first.text
         assert not first.good
-    (veiled,) = asked(record, result.frame, OpeningAsked(1), veiled=True)
+    (veiled,) = asked(record, OpeningAsked(1), veiled=True)
     assert veiled == Told((PAGE,), 1, VEILED)
-    (none,) = asked(None, result.frame, ReplayAsked(1))
+    (none,) = asked(None, ReplayAsked(1))
     assert isinstance(none, Told)
     assert "without a record" in none.text
 
@@ -207,8 +204,7 @@ def test_what_cannot_be_done_with_an_entry_is_said(record: Record, result: Recon
 def test_a_list_is_read_again_a_second_after_something_was_written(record: Record, result: Reconstruction) -> None:
     async def run() -> list[Posted]:
         posted: list[Posted] = []
-        first = Held(result.frame, "a pipe", Capture("a pipe", recorded=result.frame))
-        archive = Archive(record, first, posted.append)
+        archive = Archive(record, posted.append)
         everything = Browsing("everything")
         for now, written, browsing in (
             (10.0, 0, Browsing()),
@@ -270,3 +266,28 @@ def test_a_page_without_control_opens_nothing(result: Reconstruction) -> None:
     assert step(session, opened_again(result, ANN, 2.0)).entry is None
     session = step(session, ControlTaken(3.0, ANN))
     assert step(session, opened_again(result, ANN, 4.0)).entry == 3
+
+
+def test_the_way_back_leads_to_frame_and_drawings_as_they_were_and_not_to_what_was_armed(
+    result: Reconstruction,
+) -> None:
+    live = FrameFacts("pixels", "live", captured_s=WALL_S - 30)
+    table = Table(frame=live)
+    table.arm()
+    before = Held(replace(result.frame), "the cell", Capture("the cell", recorded=result.frame))
+    drawn = (ObjectDrawing(AREA), ObjectDrawing())
+    session = Session(before.size_px, drawn, held=before, decision=table.deciding)
+    nowhere = step(session, BroughtBack(table.now, ANN, WALL_S))
+    assert nowhere.held is before
+    assert "nothing to go back to" in nowhere.decision.said[0].text
+    for entry in (3, 3):
+        session = step(session, opened_again(result, ANN, table.later(1.0)))
+        assert session.entry == entry
+    refused = step(session, BroughtBack(table.now, BOB, WALL_S))
+    assert refused.entry == 3
+    after = step(session, BroughtBack(table.later(8.0), ANN, WALL_S + 10))
+    assert after.held is before
+    assert (after.objects, after.left, after.decision.case) == (drawn, None, None)
+    watched = after.decision.watched
+    assert watched is not None
+    assert (watched.held, watched.age_s) == (live, 40.0), "a live frame has grown older meanwhile"

@@ -259,8 +259,13 @@ def opens_it_again_and_goes_away(late: Operator, shift: Shift) -> None:
 
 
 def what_is_armed_expires(operator: Operator, shift: Shift) -> None:
-    """After it the decision's clock is ahead of the machine's, and stands until that has caught up."""
+    """Back on what was there before. The decision's clock is then ahead of the machine's, until that has caught up."""
+    tab(operator, "Decision")
     button(operator, "Take control").click()
+    tab(operator, "History")
+    button(operator, "Back to what was open before").click()
+    operator.until(lambda: shift.console.session.entry is None, "the scene is back")
+    tab(operator, "Decision")
     expect(button(operator, "1. Arm")).to_be_enabled()
     arm(operator)
     operator.send(ClockTicked(seconds() + SLOW_PAGE.arm_s + 1))
