@@ -1,7 +1,4 @@
-"""How soon twenty pages have all of a drawing, and how memory grows while it is drawn anew and anew.
-
-`python -m app.bench.crowd [RELEASES [CHANGES]]`
-"""
+"""How soon twenty pages have all of a drawing, and how memory grows while it is drawn anew and anew."""
 
 import gc
 import json
@@ -18,10 +15,12 @@ from pathlib import Path
 import msgspec
 import numpy as np
 
-from app.bench.served import Served, served
+from app.bench.served import Served
 from app.bench.table import table, verdict
 from app.bench.wire import drag_message
+from app.console_items import FromPage
 from app.drawing_steps import HISTORY_LENGTH
+from app.events import PointerDragged
 from app.object_drawing import Pixel
 from rotrecon.arrays import Floats
 
@@ -54,7 +53,8 @@ class Pages:
     """The process with the pages."""
 
     def __init__(self, process: "subprocess.Popen[str]") -> None:
-        self._process = process
+        self._process, self.drawer = process, 0
+        """Number of the page that draws."""
 
     def told(self) -> object:
         """What it says next."""
@@ -68,7 +68,7 @@ class Pages:
         """Drag on the first page, and wait until all have everything: what has come of it since the release."""
         frame, places = house.simulated.frame, np.linspace(start, end, MOVES)
         steps = [("start", start), *(("update", tuple(place)) for place in places), ("end", end)]
-        messages = [drag_message(frame, "0", phase, start, here, shift=shift) for phase, here in steps]
+        messages = [drag_message(frame, str(self.drawer), phase, start, here, shift=shift) for phase, here in steps]
         lines = [b64encode(msgspec.msgpack.encode(message)).decode() for message in messages]
         self._say(lines)
         self.told()
@@ -87,25 +87,26 @@ class Pages:
 @contextmanager
 def crowd(house: Served, count: int) -> Iterator[Pages]:
     """So many pages, the first of them in control, with an area drawn."""
+    _wait_for(house, 0)
     command = [sys.executable, "-m", "app.bench.crowd_pages", house.door.address, house.cookie, str(count)]
-    process = subprocess.Popen(command, stdin=subprocess.PIPE, stdout=subprocess.PIPE, text=True)
-    try:
-        pages = Pages(process)
-        assert pages.told() == "open"
-        _wait_for(house, count)
-        house.give_control(0)
-        corners = np.array(house.simulated.drawing.area.vertices_px)
-        pages.drag(house, tuple(corners.min(axis=0)), tuple(corners.max(axis=0)), shift=False)
-        yield pages
-    finally:
-        process.kill()
-        process.wait()
+    with subprocess.Popen(command, stdin=subprocess.PIPE, stdout=subprocess.PIPE, text=True) as process:
+        try:
+            pages = Pages(process)
+            assert pages.told() == "open"
+            _wait_for(house, count)
+            pages.drawer = min(house.console.pages)
+            house.give_control(pages.drawer)
+            corners = np.array(house.simulated.drawing.area.vertices_px)
+            pages.drag(house, tuple(corners.min(axis=0)), tuple(corners.max(axis=0)), shift=False)
+            yield pages
+        finally:
+            process.kill()
 
 
-def releases(house: Served, count: int) -> Released:
+def releases(house: Served, count: int, pages_open: int = PAGES) -> Released:
     """Strokes on the area, each a little off the others."""
     rng, found, started = np.random.default_rng(0), list[dict[str, float]](), 0.0
-    with crowd(house, PAGES) as pages:
+    with crowd(house, pages_open) as pages:
         for number in range(WARM_UP + count):
             started = time.process_time() if number <= WARM_UP else started
             found.append(pages.drag(house, *_stroke(house, rng), shift=True))
@@ -118,17 +119,16 @@ def releases(house: Served, count: int) -> Released:
 
 def growth(house: Served, changes: int) -> tuple[float, float]:
     """Resident memory, MB, after the first changes and after so many more, of a console with a page that reads."""
-    from app.console_items import FromPage
-    from app.events import PointerDragged
-
     rng = np.random.default_rng(1)
-    with crowd(house, 1):
+    with crowd(house, 1) as pages:
         held: list[float] = []
         for count in (SETTLED, changes):
             for _ in range(count):
-                event = FromPage(0, PointerDragged(*_stroke(house, rng), shift=True))
+                event = FromPage(pages.drawer, PointerDragged(*_stroke(house, rng), shift=True))
                 house.console.server.get_event_loop().call_soon_threadsafe(house.console.post, event)
                 house.console.wait_until_idle()
+            if not house.console.session.measured_once:
+                raise RuntimeError("the console did not measure what was drawn")
             gc.collect()
             held.append(_resident_mb())
     return held[0], held[1]
@@ -142,9 +142,9 @@ def _stroke(house: Served, rng: np.random.Generator) -> tuple[Pixel, Pixel]:
 
 def _wait_for(house: Served, count: int) -> None:
     end = time.monotonic() + OPEN_S
-    while len(house.console.pages) < count:
+    while len(house.console.pages) != count:
         if time.monotonic() > end:
-            raise RuntimeError(f"only {len(house.console.pages)} of {count} pages could be opened")
+            raise RuntimeError(f"{len(house.console.pages)} pages are open, and not {count}")
         time.sleep(0.05)
     house.console.wait_until_idle()
 
@@ -154,11 +154,10 @@ def _resident_mb() -> float:
     return pages * resource.getpagesize() / 2**20
 
 
-def crowd_report(count: int = RELEASES, changes: int = CHANGES) -> str:
+def crowd_report(house: Served, count: int = RELEASES, changes: int = CHANGES) -> str:
     """The figures as text; some minutes of work."""
-    with served("paper") as house:
-        found = releases(house, count)
-        before_mb, after_mb = growth(house, changes)
+    found = releases(house, count)
+    before_mb, after_mb = growth(house, changes)
     worst, grown = 1000 * float(np.percentile(found.seconds, 95)), 100 * (after_mb / before_mb - 1)
     rows = [
         ("release to the last message on any page, median", f"{1000 * float(np.median(found.seconds)):.0f} ms", ""),
@@ -169,7 +168,3 @@ def crowd_report(count: int = RELEASES, changes: int = CHANGES) -> str:
         (f"after {changes} more", f"{after_mb:.0f} MB, {grown:+.1f} %", verdict(grown, GROWTH_TARGET, "%")),
     ]
     return f"{PAGES} pages through the door, method `paper`\n\n{table(('figure', 'measured', 'target'), rows)}"
-
-
-if __name__ == "__main__":
-    sys.stdout.write(crowd_report(*map(int, sys.argv[1:])) + "\n")
