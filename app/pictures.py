@@ -81,7 +81,7 @@ class Pictures:
         section: int,
         overlay: OverlayName,
         ends_px: tuple[Pixel, ...],
-        tool: Tool | None,
+        tool: Tool | None = None,
     ) -> Layer:
         """All that is drawn over it, as it is sent."""
         image = self.camera_view(result, opacity, section, overlay, tool)
