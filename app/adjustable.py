@@ -44,8 +44,8 @@ MEASURING = (
     Adjustable("layers", "Objects in front of each other", "As many as overlap in depth in the area.", 1, 9, 1),
     Adjustable("sigma_factor", "Depths belong together within", "Less where things lie close behind.", 2, 5, 0.1, "σ"),
     Adjustable("rod_diameter_m", "A rod is at most as thick as", "What your clipper is meant for.", 5, 60, 1, "mm"),
-    Adjustable("rod_length_over_diameter", "and longer than thick, so many times", "Of its length.", 2, 30, 0.5),
-    Adjustable("cone_half_angle_rad", "A cone tapers to a side by", "Less is a cylinder.", 0.5, 10, 0.1, "°"),
+    Adjustable("rod_length_over_diameter", "A rod is longer than thick by a factor of", "Or more.", 2, 30, 0.5),
+    Adjustable("cone_half_angle_rad", "A cone tapers to a side by", "Less is a cylinder.", 0.5, 10, 0.01, "°"),
 )
 """What a class is depends on what the cell handles and with which tools; how depths are told apart on what lies about.
 The other settings are thresholds that were measured over thousands of scenes, and nobody sees on one what they do."""
@@ -81,9 +81,9 @@ def with_value(chosen: Chosen, key: str, value: Value) -> Chosen | None:
     one = NUMBERS.get(key)
     if one is None or isinstance(value, str) or not isfinite(value) or not one.low <= one.shown(value) <= one.high:
         return None
-    if isinstance(chosen[key], int):
-        if value != int(value):
-            return None
-        value = int(value)
+    whole = isinstance(chosen[key], int)
+    if whole and value != int(value):
+        return None
+    value = int(value) if whole else float(value)
     part = "measuring" if key in MEASURED else "deciding"
     return replace(chosen, **{part: replace(getattr(chosen, part), **{key: value})})

@@ -101,7 +101,7 @@ class LastSessions:
         return session
 
     def keep(self, session: Session) -> None:
-        """Put what is new on disk; what the disk refuses is told of, and tried again with the next change."""
+        """Put what is new on disk; what the disk refuses is told of once, and tried again."""
         if session.held is None:
             return
         path, kept = self.path(session.held.frame), kept_of(session)
@@ -112,8 +112,10 @@ class LastSessions:
             write_whole(path, _written(kept))
             self._kept, self.problem = (path, kept), None
         except OSError as error:
-            self.problem = f"This session is not kept ({error.strerror}): {path}."
-            log.warning(self.problem)
+            problem = f"This session is not kept ({error.strerror}): {path}."
+            if problem != self.problem:
+                log.warning(problem)
+            self.problem = problem
 
 
 def _aside(path: Path) -> Path:

@@ -58,7 +58,7 @@ class _Row:
             set_to(self._number, "min", from_mm(one.low, session.unit))
             set_to(self._number, "max", from_mm(one.high, session.unit))
         set_to(self._number, "value", from_mm(one.shown(value), self._unit))
-        default = f"{one.shown(self._default):g} {one.unit}".strip()
+        default = f"{one.shown(self._default):.3g} {one.unit}".strip()
         ends = f"{one.low:g} to {one.high:g} {one.unit}".strip()
         text = f'<div class="rr-setting"><b>{one.label}</b>: {ends}, by default {default}. {one.why}</div>'
         set_to(self._text, "content", in_unit(text, session.unit))

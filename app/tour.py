@@ -32,7 +32,7 @@ def _measured(session: Session) -> bool:
 STATIONS = (
     Station(
         "control",
-        "Press “Take control” below: one page draws and decides, others watch.",
+        "Press “Take control” below, or ask for it: one page draws and decides, others watch.",
         lambda session, page, number: session.decision.control.holder == number,
     ),
     Station(

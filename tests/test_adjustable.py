@@ -17,8 +17,6 @@ from tests.deciding.desk import ANN, BOB, Table
 
 numbers = pytest.mark.parametrize("one", NUMBERS.values(), ids=lambda one: one.key)
 SESSION = Session((640, 480))
-EVEN = {"layers": 1.0}
-"""What values of a setting are whole multiples of."""
 
 
 @numbers
@@ -40,6 +38,14 @@ def test_what_is_out_of_range_or_no_number_is_not_taken(one: Adjustable) -> None
     outside = (one.low - one.step, one.high + one.step, nan, inf, -inf)
     assert all(with_value(Chosen(), one.key, one.setting(value)) is None for value in outside)
     assert with_value(Chosen(), one.key, "3") is None
+
+
+def test_a_whole_number_is_the_same_setting_as_that_number_with_a_point() -> None:
+    for key, value in (("sigma_factor", 3), ("arm_s", 20)):
+        one, other = with_value(Chosen(), key, value), with_value(Chosen(), key, float(value))
+        assert one is not None
+        assert other is not None
+        assert repr(one) == repr(other)
 
 
 def test_no_other_setting_can_be_changed_and_no_layer_halved() -> None:

@@ -123,12 +123,19 @@ def test_a_drawing_or_a_setting_that_cannot_be_is_left_aside(empty: Session, tmp
         assert file.problem is not None
 
 
-def test_a_disk_that_does_not_obey_is_told_of(empty: Session, tmp_path: Path) -> None:
+def test_a_disk_that_does_not_obey_is_told_of_once(
+    empty: Session, tmp_path: Path, caplog: pytest.LogCaptureFixture
+) -> None:
     (tmp_path / "sessions").write_text("in the way")
     file = LastSessions(tmp_path)
-    file.keep(replace(empty, objects=(ObjectDrawing(kind="rod"),)))
+    for _ in range(2):
+        file.keep(replace(empty, objects=(ObjectDrawing(kind="rod"),)))
     assert file.problem is not None
     assert "not kept" in file.problem
+    assert len(caplog.records) == 1
+    (tmp_path / "sessions").unlink()
+    file.keep(replace(empty, objects=(ObjectDrawing(kind="rod"),)))
+    assert file.problem is None
 
 
 def test_each_scene_has_a_session_of_its_own(scene: Simulated, empty: Session, tmp_path: Path) -> None:
