@@ -27,7 +27,8 @@ BY_SECTIONS = """
 """.split()
 FITTED = """
     rays.surfaces rays.patch rays.correlation rays.fitting rays.ray_fit rays.coarse_fit rays.starts
-    edges.edge_lines edges.edge_steps edges.edges rays.limbs rays.guard rays.hypotheses rays.robust
+    edges.edge_lines edges.shading edges.edge_model edges.edge_steps edges.edges
+    rays.limbs rays.guard rays.hypotheses rays.robust
 """.split()
 TURNED = """
     rays.lines turned.turned extent turned.looks turned.height_radii turned.profile turned.parts

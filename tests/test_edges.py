@@ -101,6 +101,26 @@ def test_a_step_is_found_wherever_it_is(angle, half_width, shift, tilt_deg, blur
     assert all(side.sigma_px < 0.15 for side in edges.sides)
 
 
+@settings(max_examples=15, deadline=None)
+@given(
+    angle=st.floats(0, np.pi), half_width=st.floats(12.0, 25.0), lamp=st.floats(-0.35, 0.35), seed=st.integers(0, 99)
+)
+def test_shading_that_is_steepest_inside_a_limb_is_no_edge(angle, half_width, lamp, seed):
+    """An even cylinder in the light of a lamp beside the camera, before a textured wall as bright as its limbs.
+
+    A lamp farther aside leaves the last of a limb in its own shadow; less than 12 px do not tell how it is lit.
+    """
+    away = distances(angle) / half_width
+    facing = np.cos(lamp) * np.sqrt(np.clip(1 - away**2, 0, 1)) + np.sin(lamp) * away
+    lit = (0.25 + 0.75 * facing.clip(0, 1))[..., None] * np.array(WOOD) * 1.6
+    wall = np.array(WOOD) * 0.9 * (1 + 0.15 * texture(seed, 2.0))
+    inside = covered(np.abs(distances(angle)) - half_width, 0.4)[..., None]
+    edges = found_on(encoded(inside * lit + (1 - inside) * wall), angle, half_width)
+    for number, side in enumerate(edges.sides):
+        if side.trusted:
+            assert abs(mean_of(edges, slice(number * LENGTH, (number + 1) * LENGTH))) < 0.45
+
+
 def test_colours_of_equal_grey_make_an_edge():
     green, red = LINEAR_LIGHT[[59, 130, 60]], LINEAR_LIGHT[[147, 85, 61]]
     edges = found_on(encoded(strip(0.4, 15, green, red)), 0.4, 15, shift=1.7)

@@ -9,7 +9,8 @@ from scipy import ndimage  # pyright: ignore[reportMissingTypeStubs]
 
 from rotrecon.arrays import Bools, Bytes, Cloud, Floats, Indices, freeze
 from rotrecon.edges.edge_lines import BEYOND_PX, Line, Stretch, find_line
-from rotrecon.edges.edge_steps import Profiles, Steps, find_steps
+from rotrecon.edges.edge_model import Profiles
+from rotrecon.edges.edge_steps import Steps, find_steps
 
 ACROSS_PX = np.array([-5, -4, -3, -2, -1.5, -1, -0.5, 0, 0.5, 1, 1.5, 2, 3, 4, 5])
 """Samples across an edge: half a pixel apart where it may be, one where texture is learnt, and no farther off, where
@@ -30,8 +31,8 @@ RUNNER_UP_SHARE = 0.6
 LEAST_FOUND = 0.6
 """Share of the points with an edge on a line to be trusted."""
 MOVED_PX, MOVES, FARTHEST_PX = 0.2, 6, 2.5
-"""A line farther from its steps is moved onto them, and they are looked for again, so many times at most and no farther
-from where it began."""
+"""A line farther inside its steps is moved onto them, and they are looked for again, so many times at most and no
+farther from where it began. Not inward: what shading there is on the object would draw it on and on."""
 LARGEST_SIGMA_PX = 0.5
 """Of a line to be trusted: more says nothing that depth does not know."""
 
@@ -174,9 +175,7 @@ def _steps(crop: _Crop, clear: list[tuple[Indices, Stretch, Line]]) -> list[Step
     first_px = [line.offset_px for _, _, line in clear]
     steps = find_steps(_profiles(crop, clear))
     for _ in range(MOVES):
-        lines_px = [
-            one.line_px.clip(px - FARTHEST_PX, px + FARTHEST_PX) for one, px in zip(steps, first_px, strict=True)
-        ]
+        lines_px = [one.line_px.clip(px, px + FARTHEST_PX) for one, px in zip(steps, first_px, strict=True)]
         moved_px = [np.abs(px - line.offset_px) for px, (_, _, line) in zip(lines_px, clear, strict=True)]
         if max((float(np.median(px)) for px in moved_px), default=0.0) < MOVED_PX:
             break
