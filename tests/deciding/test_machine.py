@@ -111,6 +111,7 @@ class Machine(RuleBasedStateMachine):
         assert after.case.offer.digest == self.digest
         assert after.fault is None
         assert (page, after.case.number) in self.pictured
+        assert after.case.override is not None or not after.case.in_the_way
         assert not fresh or isinstance(event, ArmPressed)
 
     def _check_decided(self, before: Deciding, event: DecisionEvent, after: Deciding, now: Decided) -> None:
@@ -166,11 +167,15 @@ class Machine(RuleBasedStateMachine):
     def answers(self, page: int, granted: bool) -> None:
         self.do(HandoverAnswered(self.now, page, granted))
 
-    @rule(tool=st.sampled_from(["grip", "grip", "cutter", None]), sent=st.sampled_from([True, True, False]))
-    def measured(self, tool: str | None, sent: bool) -> None:
+    @rule(
+        tool=st.sampled_from(["grip", "grip", "cutter", None]),
+        sent=st.sampled_from([True, True, False]),
+        hits=st.sampled_from([False, True]),
+    )
+    def measured(self, tool: str | None, sent: bool, hits: bool = False) -> None:
         self.count += 1
         self.digest = f"digest {self.count}"
-        made = offer(self.digest, tool=tool)
+        made = offer(self.digest, tool=tool, in_the_way={"grip": ("It would hit a pipe.",)} if hits else {})
         self.do(Offered(self.now, made, Entry("proposal", "somebody", self.digest)))
         if sent:
             self.pictures(0)
