@@ -14,11 +14,11 @@ from rotrecon.judgement import doubts_of, failure_of, too_little
 from rotrecon.outcome import Evidence, FailureReason, Fit, FitFailure, PartOf, Range
 from rotrecon.primitives import Primitive
 from rotrecon.rays.hypotheses import Held, Scene, scene_of
+from rotrecon.rays.lateral import Lateral
 from rotrecon.rays.patch import Patch, patch_of
 from rotrecon.rays.ray_fit import RayFit
 from rotrecon.rays.robust import Ranked, rank
 from rotrecon.rays.starts import robust_line
-from rotrecon.rays.surfaces import Lateral
 from rotrecon.recognition import candidates_of, chosen_of, intervals_of, is_possible, solid_of
 from rotrecon.reconstruction import Cut, Reconstruction
 from rotrecon.section_radii import SectionRadii, section_radii

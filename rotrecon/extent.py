@@ -6,8 +6,8 @@ from typing import NamedTuple
 import numpy as np
 
 from rotrecon.arrays import Floats
+from rotrecon.rays.lateral import Lateral
 from rotrecon.rays.patch import Patch
-from rotrecon.rays.surfaces import Lateral
 from rotrecon.turned.turned import radius_at
 
 INNER = 0.8

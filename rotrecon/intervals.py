@@ -5,8 +5,9 @@ from scipy.special import stdtrit  # pyright: ignore[reportMissingTypeStubs, rep
 
 from rotrecon.arrays import Floats
 from rotrecon.outcome import Intervals, Range
+from rotrecon.rays.ball import Ball
+from rotrecon.rays.lateral import Lateral
 from rotrecon.rays.ray_fit import RayFit
-from rotrecon.rays.surfaces import Ball, Lateral
 from rotrecon.turned.turned import AXIS_PARAMETERS, Turned
 
 PLANE_95, SPACE_95 = 2.448, 2.796

@@ -8,9 +8,9 @@ from rotrecon.intervals import radius_sigma
 from rotrecon.outcome import DRAW_CLOSE, FailureReason, FitFailure, Intervals
 from rotrecon.primitives import in_words
 from rotrecon.rays.hypotheses import Scene
+from rotrecon.rays.lateral import Lateral
 from rotrecon.rays.robust import Ranked
 from rotrecon.rays.starts import robust_line
-from rotrecon.rays.surfaces import Lateral
 from rotrecon.settings import Settings
 from rotrecon.soundness import Soundness
 from rotrecon.two_objects import shows_two

@@ -12,8 +12,11 @@ from rotrecon.grasp import strange
 from rotrecon.noise import RayNoise
 from rotrecon.outcome import Evidence, Fit
 from rotrecon.primitives import Primitive, Sphere
+from rotrecon.rays.ball import Ball
+from rotrecon.rays.lateral import Lateral
 from rotrecon.rays.limbs import limbs_of
-from rotrecon.rays.surfaces import Ball, Derivatives, Lateral, Surface, turn_of
+from rotrecon.rays.surfaces import Surface, turn_of
+from rotrecon.rays.traces import Derivatives
 from rotrecon.reconstruction import Reconstruction
 from rotrecon.workspace import out_of_reach
 

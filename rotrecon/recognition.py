@@ -5,8 +5,9 @@ import numpy as np
 from rotrecon.intervals import ball_intervals, lateral_intervals, turned_intervals
 from rotrecon.outcome import Candidate, Intervals, Range
 from rotrecon.primitives import Frustum, Kind, Primitive, Revolution, Sphere
+from rotrecon.rays.ball import Ball
+from rotrecon.rays.lateral import Lateral
 from rotrecon.rays.robust import Ranked
-from rotrecon.rays.surfaces import Ball, Lateral
 from rotrecon.sections.radii import SHAPE_OF_KIND
 from rotrecon.settings import Settings
 from rotrecon.turned.turned import Turned

@@ -7,10 +7,11 @@ import numpy as np
 from rotrecon.arrays import Bools, Cloud, Floats, Indices, freeze
 from rotrecon.axis import Axis, SpaceSections, cut_in_space
 from rotrecon.circles import SectionCircles, SectionState, circumcircles
+from rotrecon.rays.ball import Ball
 from rotrecon.rays.fitting import MEDIAN_LOSS, TO_SIGMA
 from rotrecon.rays.patch import Patch
 from rotrecon.rays.ray_fit import RayFit
-from rotrecon.rays.surfaces import Ball, Surface
+from rotrecon.rays.surfaces import Surface
 from rotrecon.settings import Settings
 from rotrecon.turned.parts import Part, parts_of
 from rotrecon.turned.profile import profile_of

@@ -6,10 +6,10 @@ import numpy as np
 
 from rotrecon.arrays import Bools, Floats, freeze
 from rotrecon.rays.fitting import MEDIAN_LOSS, TO_SIGMA
+from rotrecon.rays.lateral import Lateral
 from rotrecon.rays.limbs import limbs_of
 from rotrecon.rays.patch import Patch
 from rotrecon.rays.ray_fit import RayFit
-from rotrecon.rays.surfaces import Lateral
 
 AGREES_SIGMA = 4.0
 """Residuals within which a depth agrees with the surface."""

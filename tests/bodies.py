@@ -10,12 +10,14 @@ from rotrecon.camera import PinholeCamera
 from rotrecon.drawing import AreaOfInterest, CrossSegments, Drawing, ObjectAxis, cut_sections
 from rotrecon.frame import Frame
 from rotrecon.primitives import Frustum, Primitive, basis_across
+from rotrecon.rays.ball import Ball
 from rotrecon.rays.correlation import Likeness
 from rotrecon.rays.fitting import Outline
+from rotrecon.rays.lateral import Lateral
 from rotrecon.rays.patch import Patch, patch_of, without_speckle
 from rotrecon.rays.ray_fit import RayFit, Sight
 from rotrecon.rays.starts import Ridge, ridge
-from rotrecon.rays.surfaces import Ball, Lateral, turn_of
+from rotrecon.rays.surfaces import turn_of
 from rotrecon.segmentation import segment
 from rotrecon.settings import Settings
 from rotrecon.simulation.raycast import first_hit

@@ -9,10 +9,12 @@ from rotrecon.camera import PinholeCamera, transform
 from rotrecon.drawing import Drawing, cut_sections
 from rotrecon.frame import Frame, StereoNoise, View
 from rotrecon.primitives import Frustum, Sphere
+from rotrecon.rays.ball import Ball
 from rotrecon.rays.hypotheses import Scene, scene_of
+from rotrecon.rays.lateral import Lateral
 from rotrecon.rays.patch import patch_of
 from rotrecon.rays.ray_fit import RayFit, Sight, fine
-from rotrecon.rays.surfaces import Ball, Lateral, Surface, turn_of
+from rotrecon.rays.surfaces import Surface, turn_of
 from rotrecon.simulation.ideal_drawing import ideal_drawing
 from rotrecon.simulation.rendering import Body, World, render
 from rotrecon.simulation.scenery import concrete, plane_behind

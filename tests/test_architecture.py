@@ -26,7 +26,8 @@ BY_SECTIONS = """
     sections.radii sections.section_fit sections.by_sections
 """.split()
 FITTED = """
-    rays.surfaces rays.patch rays.correlation rays.fitting rays.ray_fit rays.coarse_fit rays.starts
+    rays.traces rays.lateral rays.ball rays.surfaces rays.patch rays.correlation rays.fitting rays.ray_fit
+    rays.coarse_fit rays.starts
     edges.edge_lines edges.shading edges.edge_model edges.edge_steps edges.edges
     rays.limbs rays.guard rays.hypotheses rays.robust
 """.split()
@@ -50,14 +51,15 @@ ORDER = [*GIVEN, *MATCHED, *PROPOSED_AXIS, *SEGMENTED, *BY_SECTIONS, *BY_RAYS, "
 """The flow of data; a stage may import only what stands before it."""
 STAGES = set(
     """
-    workspace drawing segmentation circles sections.radii noise stroke.planes rays.surfaces rays.correlation
+    workspace drawing segmentation circles sections.radii noise stroke.planes rays.correlation
     edges.edge_lines rays.starts tools
 """.split()
 )
 """They know the types, and not each other."""
 TYPES = set(
     """
-    arrays camera primitives contact settings frame drawing outcome tool_table rays.surfaces rays.patch
+    arrays camera primitives contact settings frame drawing outcome tool_table
+    rays.traces rays.lateral rays.ball rays.surfaces rays.patch
 """.split()
 )
 

@@ -5,9 +5,9 @@ import pytest
 
 from rotrecon.extent import Extent, extent_of
 from rotrecon.rays.fitting import robust_scale
+from rotrecon.rays.lateral import Lateral
 from rotrecon.rays.patch import Patch
 from rotrecon.rays.ray_fit import Sight, depths_of, near
-from rotrecon.rays.surfaces import Lateral
 from rotrecon.turned.turned import turned_from
 from tests.bodies import BOTTLE, CONE, CYLINDER, Body, body_at, depth_of, drawing_round, noisy_frame, patch_seen
 

@@ -9,6 +9,7 @@ from hypothesis import given, settings
 from hypothesis import strategies as st
 
 from rotrecon.noise import RayNoise
+from rotrecon.rays.ball import Ball
 from rotrecon.rays.fitting import (
     CAUCHY,
     TUKEY,
@@ -21,7 +22,8 @@ from rotrecon.rays.fitting import (
     robust_scale,
     tukey,
 )
-from rotrecon.rays.surfaces import Ball, Lateral, Surface, turn_of
+from rotrecon.rays.lateral import Lateral
+from rotrecon.rays.surfaces import Surface, turn_of
 
 FOCAL_PX = 700.0
 NOISE = RayNoise(floor_m=0.0, growth_per_m=0.25 / (FOCAL_PX * 0.1), correlation_px=0.0, stated=True)

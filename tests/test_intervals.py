@@ -8,9 +8,11 @@ from hypothesis import given, settings
 from hypothesis import strategies as st
 
 from rotrecon.intervals import PLANE_95, SPACE_95, ball_intervals, lateral_intervals, quantile_95, radius_sigma
+from rotrecon.rays.ball import Ball
 from rotrecon.rays.correlation import Likeness
+from rotrecon.rays.lateral import Lateral
 from rotrecon.rays.ray_fit import RayFit, Sight, fine
-from rotrecon.rays.surfaces import Ball, Lateral, Surface, turn_of
+from rotrecon.rays.surfaces import Surface, turn_of
 from tests.bodies import CONE, CYLINDER, Knee, body_at, depth_of, drawing_round, noisy_frame, patch_seen
 
 CENTER_M = np.array([0.02, -0.01, 0.8])

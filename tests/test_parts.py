@@ -5,7 +5,7 @@ import pytest
 from hypothesis import given, settings
 from hypothesis import strategies as st
 
-from rotrecon.rays.surfaces import Lateral
+from rotrecon.rays.lateral import Lateral
 from rotrecon.turned.parts import Part, parts_of
 from rotrecon.turned.profile import Profile, profile_of
 from rotrecon.turned.turned_fit import fit_turned

@@ -17,10 +17,12 @@ from rotrecon.photometry.outlines import CarriedOutline
 from rotrecon.photometry.refinement import Refinement, others_of, refined, sought, weighed
 from rotrecon.photometry.splines import SCIPY, SUPPORT_PX, Spline, spline_of
 from rotrecon.photometry.visible import clear_of, outward, seen_too
+from rotrecon.rays.ball import Ball
 from rotrecon.rays.fitting import Outline
 from rotrecon.rays.hypotheses import Held
+from rotrecon.rays.lateral import Lateral
 from rotrecon.rays.robust import Ranked
-from rotrecon.rays.surfaces import Ball, Lateral, Surface, turn_of
+from rotrecon.rays.surfaces import Surface, turn_of
 from rotrecon.reconstruct import reconstruct
 from rotrecon.settings import Settings
 from tests.pairs import BALL, CAMERA, CONE, LEG, Pair, painted, pair

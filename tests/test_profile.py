@@ -3,9 +3,10 @@ from dataclasses import replace
 import numpy as np
 import pytest
 
+from rotrecon.rays.ball import Ball
+from rotrecon.rays.lateral import Lateral
 from rotrecon.rays.patch import Patch
 from rotrecon.rays.ray_fit import RayFit, Sight, fine
-from rotrecon.rays.surfaces import Ball, Lateral
 from rotrecon.turned.profile import Profile, profile_of
 from rotrecon.turned.turned_fit import fit_turned
 from tests.bodies import BODIES, BOTTLE, CONE, CYLINDER, FLANGED_PIPE, Body, as_fit, seen

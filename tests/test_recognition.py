@@ -8,10 +8,12 @@ from hypothesis import given
 from hypothesis import strategies as st
 
 from rotrecon.primitives import Frustum, Sphere
+from rotrecon.rays.ball import Ball
 from rotrecon.rays.correlation import Likeness
+from rotrecon.rays.lateral import Lateral
 from rotrecon.rays.ray_fit import RayFit, Sight
 from rotrecon.rays.robust import Ranked
-from rotrecon.rays.surfaces import Ball, Lateral, Surface, turn_of
+from rotrecon.rays.surfaces import Surface, turn_of
 from rotrecon.recognition import candidates_of, chosen_of, half_angle_rad, is_possible, is_straight, solid_of
 from rotrecon.sections.radii import Shape
 from rotrecon.settings import Settings

@@ -7,7 +7,9 @@ import pytest
 from hypothesis import assume, given, settings
 from hypothesis import strategies as st
 
-from rotrecon.rays.surfaces import Ball, Lateral, Surface, turn_of
+from rotrecon.rays.ball import Ball
+from rotrecon.rays.lateral import Lateral
+from rotrecon.rays.surfaces import Surface, turn_of
 
 FOCAL_PX = 700.0
 U, V = np.meshgrid(np.linspace(-0.6, 0.6, 41), np.linspace(-0.45, 0.45, 31))

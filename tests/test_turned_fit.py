@@ -5,10 +5,11 @@ import pytest
 
 from rotrecon.drawing import AreaOfInterest, Drawing, ObjectAxis
 from rotrecon.extent import Extent
+from rotrecon.rays.ball import Ball
 from rotrecon.rays.limbs import limbs_of, outline_at
 from rotrecon.rays.ray_fit import RayFit
 from rotrecon.rays.starts import Ridge
-from rotrecon.rays.surfaces import Ball, turn_of
+from rotrecon.rays.surfaces import turn_of
 from rotrecon.turned.height_radii import height_radii
 from rotrecon.turned.looks import looks_at, medians
 from rotrecon.turned.turned import Turned, turned_from

@@ -13,7 +13,7 @@ from rotrecon.drawing import AreaOfInterest
 from rotrecon.simulation.stereo import simulate_views
 from rotrecon.stereo.canvas import canvas_over, whole
 from rotrecon.stereo.frames import area_frame, range_in, whole_frame, window_for
-from rotrecon.stereo.matching import MatcherSettings, matcher_of
+from rotrecon.stereo.matching import matcher_of
 from rotrecon.stereo.preparing import Prepared, prepare
 from rotrecon.workspace import Workspace
 
@@ -73,7 +73,7 @@ def bare_call(prepared: Prepared) -> Callable[[], object]:
     window_px = window_for(AreaOfInterest.rectangle((0, 0), (camera.width, camera.height)))
     canvas = canvas_over(pair.rectification, whole(camera), 1.0, range_in(pair, whole(camera)))
     first, second = (cv2.cvtColor(prepared.views[number].image, cv2.COLOR_RGB2GRAY) for number in (0, pair.number))
-    return lambda: matcher_of(canvas, MatcherSettings(window_px=window_px)).compute(first, second)
+    return lambda: matcher_of(canvas, window_px).compute(first, second)
 
 
 def cpu_ms(work: Callable[[], object], runs: int) -> float:

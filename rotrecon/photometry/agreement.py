@@ -8,7 +8,8 @@ from rotrecon.arrays import Bools, Floats, Indices, freeze
 from rotrecon.photometry.carrying import Carrier
 from rotrecon.photometry.splines import Spline
 from rotrecon.rays.fitting import UNSCALED, Prediction, robust_scale, tukey
-from rotrecon.rays.surfaces import Rays, Surface
+from rotrecon.rays.surfaces import Surface
+from rotrecon.rays.traces import Rays
 
 BRIGHTNESS_ROUNDS = 2
 """Reweighted rounds for gain and offset: the surface's own rounds go on from there."""

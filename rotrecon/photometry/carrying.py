@@ -7,7 +7,9 @@ import numpy as np
 from rotrecon.arrays import Floats, freeze
 from rotrecon.camera import PinholeCamera, inverse, transform
 from rotrecon.frame import View
-from rotrecon.rays.surfaces import Ball, Rays, Surface
+from rotrecon.rays.ball import Ball
+from rotrecon.rays.surfaces import Surface
+from rotrecon.rays.traces import Rays
 
 
 @dataclass(frozen=True, eq=False)

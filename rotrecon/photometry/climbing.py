@@ -9,12 +9,13 @@ from rotrecon.photometry.matches import Match, Other, matches_of
 from rotrecon.photometry.outlines import CarriedOutline, Edge, outline_in
 from rotrecon.photometry.sharpening import textured_share
 from rotrecon.photometry.visible import clear_of, shown
+from rotrecon.rays.ball import Ball
 from rotrecon.rays.fitting import TUKEY, Loss, Measurement, cauchy, refine, tukey
 from rotrecon.rays.hypotheses import Scene
 from rotrecon.rays.limbs import seen_outline
 from rotrecon.rays.patch import Patch
 from rotrecon.rays.ray_fit import spread
-from rotrecon.rays.surfaces import Ball, Surface
+from rotrecon.rays.surfaces import Surface
 
 ROUNDS: tuple[tuple[Loss, int], ...] = ((cauchy, 3000), (tukey, 12000))
 """Loss and most pixels, of all views together: some of them are enough to find the way. Each chooses them anew."""

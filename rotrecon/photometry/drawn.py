@@ -4,8 +4,10 @@ import numpy as np
 
 from rotrecon.arrays import Floats
 from rotrecon.drawing import CrossSegments
+from rotrecon.rays.ball import Ball
+from rotrecon.rays.lateral import Lateral
 from rotrecon.rays.patch import Patch
-from rotrecon.rays.surfaces import Ball, Lateral, Surface, turn_of
+from rotrecon.rays.surfaces import Surface, turn_of
 from rotrecon.sections.radii import Shape
 
 DRAWN_MARGIN_PX = 6.0

@@ -15,11 +15,12 @@ from rotrecon.photometry.scanning import TILTS_RAD, scanned
 from rotrecon.photometry.sharpening import sharpened
 from rotrecon.photometry.sureness import covariance_of
 from rotrecon.photometry.visible import clear_of
+from rotrecon.rays.ball import Ball
 from rotrecon.rays.correlation import Likeness
 from rotrecon.rays.hypotheses import Held, Scene
 from rotrecon.rays.ray_fit import RayFit, Sight, predicted
 from rotrecon.rays.robust import PARAMETERS, Ranked
-from rotrecon.rays.surfaces import Ball, Surface, radius_seen_m
+from rotrecon.rays.surfaces import Surface, radius_seen_m
 from rotrecon.sections.radii import Shape
 from rotrecon.turned.turned import Turned
 

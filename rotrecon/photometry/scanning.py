@@ -10,9 +10,11 @@ from rotrecon.arrays import Bools, Floats
 from rotrecon.photometry.carrying import Carrier
 from rotrecon.photometry.matches import FEWEST_PIXELS, Other
 from rotrecon.photometry.splines import smoothed
+from rotrecon.rays.lateral import Lateral
 from rotrecon.rays.patch import Patch
 from rotrecon.rays.ray_fit import spread
-from rotrecon.rays.surfaces import Lateral, Rays, Surface, turn_of
+from rotrecon.rays.surfaces import Surface, turn_of
+from rotrecon.rays.traces import Rays
 
 SMOOTHING_PX = 1.5
 """Standard deviation of the low pass: the deeper, the farther apart depths may be tried."""

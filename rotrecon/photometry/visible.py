@@ -5,8 +5,10 @@ import numpy as np
 
 from rotrecon.arrays import Bools, Floats
 from rotrecon.photometry.carrying import Carrier
+from rotrecon.rays.lateral import Lateral
 from rotrecon.rays.patch import Patch
-from rotrecon.rays.surfaces import Lateral, Rays, Surface
+from rotrecon.rays.surfaces import Surface
+from rotrecon.rays.traces import Rays
 
 GUARD_PX = 2.0
 """Distance from the outline in either picture: blur and splines mix what is behind into pixels that are nearer."""

@@ -9,7 +9,8 @@ import numpy as np
 
 from rotrecon.arrays import Bools, Floats, Indices, freeze
 from rotrecon.noise import RayNoise
-from rotrecon.rays.surfaces import Derivatives, Rays, Surface
+from rotrecon.rays.surfaces import Surface
+from rotrecon.rays.traces import Derivatives, Rays
 
 TUKEY = 4.685
 """Residuals beyond so many sigma count for nothing; at this value 95 % of the efficiency of least squares is kept

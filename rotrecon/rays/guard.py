@@ -6,9 +6,10 @@ import numpy as np
 
 from rotrecon.arrays import Bools, Floats
 from rotrecon.rays.fitting import Outline, tukey
+from rotrecon.rays.lateral import Lateral
 from rotrecon.rays.patch import Patch
 from rotrecon.rays.ray_fit import RayFit, Sight, fine, predicted
-from rotrecon.rays.surfaces import Lateral, Surface
+from rotrecon.rays.surfaces import Surface
 
 MATCHED = 0.25
 """Errors less alike than this are not those of matching windows, which is what limbs suffer from."""

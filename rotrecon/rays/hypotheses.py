@@ -8,13 +8,16 @@ import numpy as np
 from rotrecon.arrays import Bools, Floats, Indices, freeze
 from rotrecon.camera import PinholeCamera
 from rotrecon.drawing import CrossSegments
+from rotrecon.rays.ball import Ball
 from rotrecon.rays.coarse_fit import coarse, coarse_pixels
 from rotrecon.rays.fitting import Outline, cauchy
+from rotrecon.rays.lateral import Lateral
 from rotrecon.rays.limbs import ANY_GAP_PX, mask_outline
 from rotrecon.rays.patch import Patch
 from rotrecon.rays.ray_fit import depths_of, spread
 from rotrecon.rays.starts import Ridge, ball_starts, cone_starts, cylinder_starts, ridge, together
-from rotrecon.rays.surfaces import Ball, Lateral, Range, Surface, limited
+from rotrecon.rays.surfaces import Surface
+from rotrecon.rays.traces import Range, limited
 from rotrecon.sections.radii import Shape
 
 SCOUT_PIXELS = 150

@@ -8,9 +8,11 @@ from rotrecon.arrays import Bools, Floats, Indices, freeze
 from rotrecon.camera import PinholeCamera
 from rotrecon.drawing import CrossSegments
 from rotrecon.edges.edges import find_edges
+from rotrecon.rays.ball import Ball
 from rotrecon.rays.fitting import Outline
+from rotrecon.rays.lateral import Lateral
 from rotrecon.rays.patch import Patch
-from rotrecon.rays.surfaces import Ball, Lateral, Surface
+from rotrecon.rays.surfaces import Surface
 
 MASK_SIGMA_PX = 1.0
 """Matching moves a mask's edge by a pixel or so, the same way everywhere (measured on rendered pairs)."""

@@ -5,7 +5,8 @@ from dataclasses import dataclass
 import numpy as np
 
 from rotrecon.arrays import Floats, Indices
-from rotrecon.rays.surfaces import Lateral, Rays
+from rotrecon.rays.lateral import Lateral
+from rotrecon.rays.traces import Rays
 
 FLANK = 1e-9
 """Least magnitude of the leading coefficient of a ray's quadratic: a ray along a cone's flank has none."""

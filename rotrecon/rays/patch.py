@@ -10,7 +10,7 @@ from rotrecon.camera import PinholeCamera
 from rotrecon.drawing import AreaOfInterest, CrossSegments, area_mask
 from rotrecon.frame import Frame
 from rotrecon.noise import RayNoise, noise_of
-from rotrecon.rays.surfaces import Rays
+from rotrecon.rays.traces import Rays
 from rotrecon.workspace import available
 
 MARGIN_PX = 12

@@ -6,13 +6,15 @@ from typing import Literal
 
 import numpy as np
 
+from rotrecon.rays.ball import Ball
 from rotrecon.rays.coarse_fit import follow
 from rotrecon.rays.fitting import TUKEY, Outline, tukey
 from rotrecon.rays.guard import Outlines, Task, doubting, settle
 from rotrecon.rays.hypotheses import Held, Scene, coarse_cost, hypotheses
+from rotrecon.rays.lateral import Lateral
 from rotrecon.rays.limbs import SeenOutline, seen_outline
 from rotrecon.rays.ray_fit import RayFit, Sight, fine, predicted
-from rotrecon.rays.surfaces import Ball, Lateral, Surface
+from rotrecon.rays.surfaces import Surface
 from rotrecon.sections.radii import Shape
 
 PARAMETERS: dict[Shape, int] = {"cylinder": 5, "cone": 6, "sphere": 4}

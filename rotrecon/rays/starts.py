@@ -7,7 +7,9 @@ import numpy as np
 from rotrecon.arrays import Bools, Floats, Indices, freeze
 from rotrecon.camera import PinholeCamera
 from rotrecon.drawing import CrossSegments
-from rotrecon.rays.surfaces import Ball, Lateral, turn_of
+from rotrecon.rays.ball import Ball
+from rotrecon.rays.lateral import Lateral
+from rotrecon.rays.surfaces import turn_of
 
 FEWEST_PIXELS = 3
 """A section with fewer has no middle and no width worth the name."""

@@ -10,7 +10,7 @@ from rotrecon.stereo.canvas import Box, Canvas, canvas_over, whole
 from rotrecon.stereo.carrying import inverse_depths
 from rotrecon.stereo.exposure import ENOUGH, exposure_problem
 from rotrecon.stereo.fusion import fuse, fused_sigma
-from rotrecon.stereo.matching import MatcherSettings, match
+from rotrecon.stereo.matching import match
 from rotrecon.stereo.preparing import Pair, Prepared
 from rotrecon.stereo.scouting import STEP_PX, span
 
@@ -103,9 +103,8 @@ def _moved(pair: Pair, inside: Bools) -> str | None:
 
 def _frame(prepared: Prepared, box: Box, inside: Bools, scale: float, window_px: int) -> Frame:
     reference = prepared.views[0]
-    settings = MatcherSettings(window_px=window_px)
     canvases = [canvas_over(pair.rectification, box, scale, range_in(pair, box)) for pair in prepared.pairs]
-    matched = [match(canvas, settings) for canvas in canvases]
+    matched = [match(canvas, window_px) for canvas in canvases]
     found = [inverse_depths(canvas, one.disparity_px, box) for canvas, one in zip(canvases, matched, strict=True)]
     sigmas = [
         (USUAL_SIGMA_PX if one.sigma_px is None else one.sigma_px) / canvas.disparity_of_inverse_depth

@@ -11,48 +11,39 @@ from rotrecon.stereo.disparity_noise import check_against_pictures
 
 SUBPIXEL_STEPS = 16
 """OpenCV's disparities are whole numbers of sixteenths."""
+SMALL_STEP = 2
+"""P1 over the block's pixels, the cost of a disparity that changes by one: with OpenCV's 8 slanted limbs are flattened,
+and balls, legs and wires come out too thick."""
+LARGE_STEP = 16
+"""P2 over the block's pixels, the cost of a jump."""
+LEFT_RIGHT_PX = 1
+"""How far disparities found from either picture may differ."""
+UNIQUE_PERCENT = 10
+"""By how much the best match must be better than any other."""
+GRADIENT_CAP = 31
+"""Of the filtered pictures: larger edges say nothing more."""
+SPECKLE_PX, SPECKLE_STEP = 100, 2
+"""Pixels of the smallest patch that is kept, and disparities between neighbours of one patch."""
 
 
-@dataclass(frozen=True)
-class MatcherSettings:
-    """Parameters of `cv2.StereoSGBM` (Hirschmueller 2008), those of its documentation where nothing else is said."""
+def matcher_of(canvas: Canvas, window_px: int, speckle_px: int = SPECKLE_PX) -> cv2.StereoSGBM:
+    """The matcher for a canvas (Hirschmueller 2008), five directions in one pass.
 
-    window_px: int = 5
-    """Side of the block whose pictures are compared."""
-    small_step: int = 2
-    """P1 over the block's pixels, the cost of a disparity that changes by one: with OpenCV's 8 slanted limbs are
-    flattened, and balls, legs and wires come out too thick."""
-    large_step: int = 16
-    """P2 over the block's pixels, the cost of a jump."""
-    left_right_px: int = 1
-    """How far disparities found from either picture may differ."""
-    unique_percent: int = 10
-    """By how much the best match must be better than any other."""
-    gradient_cap: int = 31
-    """Of the filtered pictures: larger edges say nothing more."""
-    speckle_px: int = 100
-    """Pixels of the smallest patch that is kept."""
-    speckle_step: int = 2
-    """Disparities between neighbours of one patch."""
-    mode: int = cv2.StereoSGBM_MODE_SGBM
-    """Five directions in one pass."""
-
-
-def matcher_of(canvas: Canvas, settings: MatcherSettings) -> cv2.StereoSGBM:
-    """The matcher for a canvas."""
-    pixels = settings.window_px**2
+    `window_px` is the side of the blocks whose pictures are compared; patches of fewer than `speckle_px` are dropped.
+    """
+    pixels = window_px**2
     return cv2.StereoSGBM.create(
         minDisparity=0,
         numDisparities=canvas.disparities,
-        blockSize=settings.window_px,
-        P1=settings.small_step * pixels,
-        P2=settings.large_step * pixels,
-        disp12MaxDiff=settings.left_right_px,
-        preFilterCap=settings.gradient_cap,
-        uniquenessRatio=settings.unique_percent,
-        speckleWindowSize=settings.speckle_px,
-        speckleRange=settings.speckle_step,
-        mode=settings.mode,
+        blockSize=window_px,
+        P1=SMALL_STEP * pixels,
+        P2=LARGE_STEP * pixels,
+        disp12MaxDiff=LEFT_RIGHT_PX,
+        preFilterCap=GRADIENT_CAP,
+        uniquenessRatio=UNIQUE_PERCENT,
+        speckleWindowSize=speckle_px,
+        speckleRange=SPECKLE_STEP,
+        mode=cv2.StereoSGBM_MODE_SGBM,
     )
 
 
@@ -69,9 +60,9 @@ class Matched:
         freeze(self)
 
 
-def match(canvas: Canvas, settings: MatcherSettings) -> Matched:
-    """Match a canvas's two pictures."""
+def match(canvas: Canvas, window_px: int, speckle_px: int = SPECKLE_PX) -> Matched:
+    """Match a canvas's two pictures; see `matcher_of`."""
     reference, other = canvas.reference_picture(), canvas.other_picture()
-    disparity = matcher_of(canvas, settings).compute(reference, other).astype(np.float32)
+    disparity = matcher_of(canvas, window_px, speckle_px).compute(reference, other).astype(np.float32)
     disparity /= np.float32(SUBPIXEL_STEPS)
     return Matched(disparity, check_against_pictures(reference, other, disparity))

@@ -6,12 +6,12 @@ from rotrecon.arrays import Cloud
 from rotrecon.stereo.canvas import canvas_over, whole
 from rotrecon.stereo.carrying import inverse_depths
 from rotrecon.stereo.limits import NEAREST_M, Limits
-from rotrecon.stereo.matching import MatcherSettings, match
+from rotrecon.stereo.matching import match
 from rotrecon.stereo.rectification import Rectification
 
 STEP_PX = 4
 """A quarter of the resolution: a thin object of 20 px is still 5 px wide, and it takes a fiftieth of the time."""
-MATCHER = MatcherSettings(speckle_px=30)
+WINDOW_PX, SPECKLE_PX = 5, 30
 """Specks are smaller at that resolution."""
 WIDEST_DISPARITY = 0.35
 """Of the picture's width: the greater part of what is nearer is seen by one camera alone."""
@@ -28,7 +28,7 @@ def scout(pair: Rectification, limits: Limits) -> Cloud:
     far, near = limits.farthest_m, limits.nearest_m
     sought = (0.0 if far is None else 1 / far, widest if near is None else 1 / near)
     canvas = canvas_over(pair, whole(camera), 1 / STEP_PX, sought)
-    return inverse_depths(canvas, match(canvas, MATCHER).disparity_px, whole(camera), STEP_PX)
+    return inverse_depths(canvas, match(canvas, WINDOW_PX, SPECKLE_PX).disparity_px, whole(camera), STEP_PX)
 
 
 def span(inverse_depth: Cloud, tail: float, fewest: int) -> tuple[float, float] | None:

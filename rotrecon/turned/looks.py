@@ -7,10 +7,10 @@ import numpy as np
 from rotrecon.arrays import Bools, Floats, Indices, freeze
 from rotrecon.noise import RayNoise
 from rotrecon.rays.fitting import Outline
+from rotrecon.rays.lateral import Lateral
 from rotrecon.rays.lines import Lines
 from rotrecon.rays.patch import Patch
 from rotrecon.rays.ray_fit import spread
-from rotrecon.rays.surfaces import Lateral
 from rotrecon.turned.turned import Turned, radius_at, turned_from
 
 INNER = 0.7

@@ -6,9 +6,9 @@ import numpy as np
 
 from rotrecon.arrays import Bools, Floats, freeze
 from rotrecon.rays.correlation import Likeness
+from rotrecon.rays.lateral import Lateral
 from rotrecon.rays.patch import Patch
 from rotrecon.rays.ray_fit import RayFit
-from rotrecon.rays.surfaces import Lateral
 from rotrecon.turned.height_radii import height_radii, with_outline
 from rotrecon.turned.looks import grazes_at, looks_at
 from rotrecon.turned.turned import AXIS_PARAMETERS, Turned

@@ -5,8 +5,10 @@ from dataclasses import dataclass, replace
 import numpy as np
 
 from rotrecon.arrays import Bools, Floats, Indices
+from rotrecon.rays.lateral import Lateral
 from rotrecon.rays.lines import Lines
-from rotrecon.rays.surfaces import GRAZING_PX, Lateral, Rays, Tangency, Trace, turn_of
+from rotrecon.rays.surfaces import turn_of
+from rotrecon.rays.traces import GRAZING_PX, Rays, Tangency, Trace
 
 TO_POWERS = np.array([[1, 4, 1, 0], [-3, 0, 3, 0], [3, -6, 3, 0], [-1, 3, -3, 1]]) / 6.0
 """Coefficients of 1, u, u^2, u^3 on an interval, from those of the four B-splines that reach it (de Boor 1978)."""

@@ -8,10 +8,10 @@ from rotrecon.arrays import Bools, Floats, Indices, freeze
 from rotrecon.extent import Extent
 from rotrecon.rays.correlation import Likeness, likeness_of
 from rotrecon.rays.fitting import Measurement, Outline, refine, tukey
+from rotrecon.rays.lateral import Lateral
 from rotrecon.rays.patch import Patch
 from rotrecon.rays.ray_fit import INLIER_SIGMA, OVERSAMPLED, WHOLE, RayFit, Sight, depths_of, spread
 from rotrecon.rays.starts import Ridge
-from rotrecon.rays.surfaces import Lateral
 from rotrecon.turned.height_radii import HeightRadii, height_radii, with_outline
 from rotrecon.turned.looks import Looks, grazes_at, looks_at
 from rotrecon.turned.smoothness import UNBENT, Radii, Smoothness, next_scale

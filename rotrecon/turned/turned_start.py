@@ -8,10 +8,11 @@ from rotrecon.arrays import Bools, Floats, Indices, freeze
 from rotrecon.extent import Extent
 from rotrecon.rays.coarse_fit import OUTLINE_SCALE
 from rotrecon.rays.fitting import TO_SIGMA, Measurement, Outline, Prediction, cauchy, refine
+from rotrecon.rays.lateral import Lateral
 from rotrecon.rays.patch import Patch
 from rotrecon.rays.ray_fit import spread
 from rotrecon.rays.starts import Ridge, robust_line
-from rotrecon.rays.surfaces import Lateral, Surface, turn_of
+from rotrecon.rays.surfaces import Surface, turn_of
 from rotrecon.turned.looks import medians
 from rotrecon.turned.smoothness import UNBENT, Smoothness
 from rotrecon.turned.turned import AXIS_PARAMETERS, Turned, turned_from
