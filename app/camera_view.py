@@ -2,19 +2,21 @@
 
 from collections.abc import Callable, Coroutine
 from itertools import pairwise
-from typing import Any
+from typing import Any, Literal
 
 import numpy as np
 from viser import ClientHandle, IcosphereHandle, SceneNodeDragEvent
 from viser import transforms as tf
 
+from app.encoded import Layer, put
 from app.object_drawing import ObjectDrawing, Part, Pixel
 from app.page import PageState
+from app.pictures import PICTURE_QUALITY
 from rotrecon.arrays import Bytes, Floats
 from rotrecon.camera import rotate
 from rotrecon.frame import Frame
 
-PICTURE_M, LINES_M, HANDLES_M, BACKDROP_M = 1.0, 0.99, 0.98, 1.02
+PICTURE_M, LAYER_M, LINES_M, HANDLES_M, BACKDROP_M = 1.0, 0.995, 0.99, 0.98, 1.02
 """Depths of the nodes before the camera; the handles come first, so that they win over the picture."""
 BACKDROP_SIZE_M = 40.0
 HANDLE_RADIUS_PX = 9.0
@@ -29,7 +31,8 @@ CLOSING_COLOR = (128, 88, 0)
 """Of the line that would close a polygon that is still open."""
 MARGIN = 1.04
 """Room round the picture, so that a corner on its border can be seen and grabbed."""
-JPEG_QUALITY = 85
+NOTHING = np.zeros((2, 2, 4), dtype=np.uint8)
+"""A layer that shows nothing."""
 KEY_MODIFIERS = ("cmd/ctrl", "alt", "cmd/ctrl+alt", "cmd/ctrl+shift", "alt+shift", "cmd/ctrl+alt+shift")
 
 HandleDragged = Callable[[Part, int, SceneNodeDragEvent], None]
@@ -47,11 +50,12 @@ class CameraView:
         self, client: ClientHandle, frame: Frame, picture: Bytes, on_handle: HandleDragged, on_picture: PictureDragged
     ) -> None:
         self._client, self._frame, self._on_handle, self._on_picture = client, frame, on_handle, on_picture
-        scene, T = client.scene, frame.T_base_camera
-        self._root = scene.add_frame(
-            "/view", show_axes=False, wxyz=tf.SO3.from_matrix(T[:3, :3]).wxyz, position=T[:3, 3]
-        )
-        self.picture = self._add_picture(picture)
+        scene = client.scene
+        self._root = scene.add_frame("/view", show_axes=False)
+        self.picture = self._add_image("picture", picture, "jpeg")
+        self._layer = self._add_image("layer", NOTHING, "png")
+        """What is drawn over the picture: it takes no clicks, and is small where the picture is not."""
+        self.hold(frame)
         backdrop = scene.add_image(
             "/view/backdrop",
             np.full((2, 2, 3), 24, dtype=np.uint8),
@@ -71,8 +75,24 @@ class CameraView:
         self._parts: list[Part] = []
         self._handles = [self._add_handle(number) for number in range(USUAL_HANDLES)]
 
+    def hold(self, frame: Frame) -> None:
+        """Stand where a frame was taken, with room for a picture of its size."""
+        self._frame, T = frame, frame.T_base_camera
+        self._drawn: object = None
+        self._root.wxyz, self._root.position = tf.SO3.from_matrix(T[:3, :3]).wxyz, T[:3, 3]
+        self._place(self.picture, (0, 0, frame.camera.width, frame.camera.height), PICTURE_M)
+
+    def cover(self, layer: Layer) -> None:
+        """Lay something over the picture."""
+        self._place(self._layer, layer.box_px, LAYER_M)
+        put(self._layer, layer.picture)
+
     def show(self, drawn: ObjectDrawing, vertices_px: tuple[Pixel, ...], page: PageState) -> None:
-        """Draw area, axis, the open polygon and their handles."""
+        """Draw area, axis, the open polygon and their handles, unless they are drawn so already."""
+        drawing = (drawn.area, drawn.axis, vertices_px, self._screen_px(1, page))
+        if drawing == self._drawn:
+            return
+        self._drawn = drawing
         corners = () if drawn.area is None else drawn.area.vertices_px
         pieces = list(zip(corners, (*corners[1:], *corners[:1]), strict=True))
         if vertices_px:
@@ -95,11 +115,11 @@ class CameraView:
         up = -T[:3, 1]
         fov_rad = 2 * np.arctan(self._half_height(page))
         with self._client.atomic():
-            if not np.allclose(camera.up_direction, up, atol=POSE_TOLERANCE):
+            if _is_off(camera.up_direction, up):
                 camera.up_direction = up
-            if not np.allclose(camera.position, position, atol=POSE_TOLERANCE):
+            if _is_off(camera.position, position):
                 camera.position = position
-            if not np.allclose(camera.look_at, position + direction, atol=POSE_TOLERANCE):
+            if _is_off(camera.look_at, position + direction):
                 camera.look_at = position + direction
             if abs(camera.fov - fov_rad) > POSE_TOLERANCE:
                 camera.fov = float(fov_rad)
@@ -141,21 +161,25 @@ class CameraView:
         points = np.asarray(pixels, dtype=np.float64)
         return self._frame.camera.unproject(points, np.full(points.shape[:-1], depth_m))
 
-    def _add_picture(self, picture: Bytes) -> Any:
-        camera = self._frame.camera
-        corners = self._at([[-0.5, -0.5], [camera.width - 0.5, camera.height - 0.5]], PICTURE_M)
-        width_m, height_m, _ = corners[1] - corners[0]
+    def _add_image(self, name: str, image: Bytes, form: Literal["jpeg", "png"]) -> Any:
+        """An image whose place and size are not known yet."""
         return self._client.scene.add_image(
-            "/view/picture",
-            picture,
-            float(width_m),
-            float(height_m),
-            format="jpeg",
-            jpeg_quality=JPEG_QUALITY,
-            position=corners.mean(axis=0),
+            f"/view/{name}",
+            image,
+            1.0,
+            1.0,
+            format=form,
+            jpeg_quality=PICTURE_QUALITY,
             cast_shadow=False,
             receive_shadow=False,
         )
+
+    def _place(self, image: Any, box_px: tuple[int, int, int, int], depth_m: float) -> None:
+        """Put an image at a depth where it covers a box (left, top, width, height) of the frame."""
+        left, top, width, height = box_px
+        corners = self._at([[left - 0.5, top - 0.5], [left + width - 0.5, top + height - 0.5]], depth_m)
+        image.render_width, image.render_height, _ = (corners[1] - corners[0]).tolist()
+        image.position = corners.mean(axis=0)
 
     def _add_lines(self, name: str, color: tuple[int, int, int]) -> Any:
         return self._client.scene.add_line_segments(
@@ -179,7 +203,7 @@ class CameraView:
         self._parts = [part for part, _ in places]
         for handle, (part, place) in zip(self._handles, places, strict=False):
             position = self._at(place, HANDLES_M)
-            if not np.allclose(handle.position, position):
+            if _is_off(handle.position, position):
                 handle.position = position
             if handle.scale != radius_m:
                 handle.scale = radius_m
@@ -207,6 +231,12 @@ class CameraView:
                 self._on_handle(part, number - self._parts.index(part), event)
 
         return dragged
+
+
+def _is_off(place: Floats, wanted: Floats) -> bool:
+    """Whether it can be seen that a place or a direction is not the one that is wanted; np.allclose takes ten times as
+    long, on every page for every change."""
+    return bool(np.abs(place - wanted).max() > POSE_TOLERANCE)
 
 
 def _block(node: Any) -> None:

@@ -1,6 +1,7 @@
 """The chart of radii along the axis."""
 
 from collections.abc import Sequence
+from functools import lru_cache
 from typing import Any
 
 import numpy as np
@@ -51,6 +52,7 @@ def section_count(result: Reconstruction | None) -> int:
     return 0 if result is None or result.second_cut is None else len(result.second_cut.circles.state)
 
 
+@lru_cache(maxsize=4)
 def radius_chart(result: Reconstruction | None, section: int) -> tuple[Floats, ...]:
     """Columns of the chart: position and radius, mm, NaN where a section is not of the series.
 

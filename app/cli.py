@@ -9,7 +9,7 @@ from typing import Annotated, Literal, get_args
 
 import typer
 
-from app import log_cli, user_cli
+from app import bench_cli, log_cli, user_cli
 from app.deciding.settings import DecisionSettings
 from app.describe import describe, describe_result, matching_notes
 from app.door.people import PeopleError, people_file
@@ -48,6 +48,7 @@ cli = typer.Typer(
 )
 log_cli.add_to(cli)
 user_cli.add_to(cli)
+bench_cli.add_to(cli)
 DEMO = "leg"
 BAD_INPUT, CANNOT = 2, 3
 
@@ -182,6 +183,7 @@ def serve(
             deciding=deciding,
             capture=capture,
             notes=notes,
+            tour=scene is None,
         )
 
 
@@ -260,51 +262,3 @@ def _intrinsics(text: str) -> Intrinsics:
     except ValueError as error:
         raise typer.BadParameter(f"--intrinsics {text} is not four numbers; write them as fx,fy,cx,cy") from error
     return Intrinsics(fx, fy, cx, cy)
-
-
-@cli.command()
-def bench(
-    paper_method: Annotated[
-        Path | None, typer.Option(metavar="OUT.md", help="Write how good the paper's method is; takes minutes.")
-    ] = None,
-    accuracy: Annotated[
-        Path | None, typer.Option(metavar="OUT.md", help="Write how accurate the program is; takes an hour.")
-    ] = None,
-    table2: Annotated[
-        Path | None, typer.Option(metavar="OUT.md", help="Write the paper's table 2 again; takes half an hour.")
-    ] = None,
-    recordings: Annotated[
-        Path | None, typer.Option(metavar="DIR", help="Recorded scenes to measure too, for --accuracy.")
-    ] = None,
-) -> None:
-    """Measure the program itself: speed and size in two minutes, how accurate it is, or the paper's method."""
-    if accuracy is not None:
-        from app.bench.accuracy.document import accuracy_document
-        from app.bench.accuracy.peers import PeerMissing
-
-        try:
-            write_file(accuracy, "the document", accuracy_document(recordings).encode())
-        except PeerMissing as error:
-            typer.echo(f"rotrecon: {error}", err=True)
-            raise typer.Exit(BAD_INPUT) from error
-        typer.echo(f"wrote {accuracy}")
-        return
-    if table2 is not None:
-        from app.bench.table2.document import table2_document
-
-        write_file(table2, "the document", table2_document().encode())
-        typer.echo(f"wrote {table2}")
-        return
-    if paper_method is None:
-        from app.bench.console_speed import console_report  # no other command needs the benchmarks
-        from app.bench.speed import speed_report
-        from app.bench.stereo_speed import stereo_report
-
-        typer.echo(speed_report())
-        typer.echo(f"\n{stereo_report()}")
-        typer.echo(f"\n{console_report()}")
-        return
-    from app.bench.paper_method import paper_method_document
-
-    write_file(paper_method, "the document", paper_method_document().encode())
-    typer.echo(f"wrote {paper_method}")

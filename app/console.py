@@ -3,19 +3,23 @@
 import asyncio
 import io
 import logging
-from collections.abc import Callable, Iterator
-from contextlib import contextmanager, redirect_stdout
+from collections.abc import Callable
+from contextlib import redirect_stdout
+from dataclasses import replace
 
-from viser import CameraHandle, ClientHandle, ViserServer
+from viser import ClientHandle, ViserServer
 
+from app.adjustable import Chosen
+from app.archive import Archive, Exported, Fetched, Listed, Told
+from app.browsing import Asked
 from app.clock import seconds, wall_s
 from app.console_items import CameraMoved, FromPage, Item, PageClosed, PageOpened, Stopped
 from app.deciding.events import (
     ClockTicked,
     DecisionEvent,
-    FrameArrived,
     FrameOpened,
     PageCame,
+    PageHeard,
     PageWent,
     PicturesSent,
 )
@@ -24,17 +28,21 @@ from app.deciding.states import Deciding
 from app.decision_text import face
 from app.desk import Desk, Proposable
 from app.events import Event, Reconstructed
-from app.measuring import measure, measure_finely
-from app.newer_frames import facts_of, newer_facts
-from app.page import PageEvent
+from app.heartbeat import Heartbeat
+from app.held import Held, Newer
+from app.last_session import LastSessions
+from app.measurements import Measurements
+from app.mishaps import logged
+from app.newcomers import Newcomers
+from app.newer_frames import facts_of
+from app.newer_steps import NewerPrepared, NewerReady, NewerUnusable
 from app.page_view import BRAND_COLOR, PageView
+from app.pages import Pages
 from app.panels import Panels
-from app.pictures import Pictures
 from app.record.store import Record
-from app.scene_view import SceneView
+from app.reopening import BroughtBack
 from app.session import Done, Session, step
 from rotrecon.capture import Capture
-from rotrecon.drawing import Drawing
 from rotrecon.frame import Frame
 from rotrecon.settings import Settings
 
@@ -42,13 +50,11 @@ CLOUD_POINTS = 40_000
 """Points of the cloud that are sent to a page: half a megabyte."""
 SOMEBODY = "operator"
 """Who is at a page when nobody had to log in."""
-MOST_MEASUREMENTS = 2
-"""Under way at once: the newest drawing need not wait for an older one, and a drag does not pile them up."""
 log = logging.getLogger(__name__)
 
 
 class Console:
-    """One frame, shown to any number of pages.
+    """One frame, shown to any number of pages, until the one in control takes a newer one.
 
     Everything that happens is put on one queue, in viser's event loop; there it steps the session, starts a
     measurement in a thread, and is shown. `idle` tells when nothing of that is left to do.
@@ -69,27 +75,55 @@ class Console:
         deciding: DecisionSettings | None = None,
         name_of: Callable[[int], str | None] = lambda client_id: SOMEBODY,
         capture: Capture | None = None,
+        last: LastSessions | None = None,
+        tour: bool = False,
     ) -> None:
         """Without a `record` nothing can be decided; `name_of` says who is behind one of viser's clients.
 
-        A `capture` of views, of which the frame is the coarse one, is matched again in every area that is drawn.
-
-        `open_viser` starts the server that its pages are on; without, one listens on `host` and `port` itself.
+        `open_viser` starts the server that its pages are on; without, one listens on `host` and `port` itself. What was
+        drawn and set in the `last` session on this frame is there again. A `tour` leads every page that is opened.
         """
-        decision = Deciding(deciding or DecisionSettings())
-        self.session = Session((frame.camera.width, frame.camera.height), decision=decision)
+        deciding = deciding or DecisionSettings()
+        chosen = Chosen(replace(settings, dangerous=deciding.dangerous), deciding)
+        held = Held(frame, name, capture or Capture(name, recorded=frame), notes)
+        self.session = Session(
+            held.size_px, decision=Deciding(deciding), held=held, settings=chosen.measuring, defaults=chosen
+        )
+        self._last, self._tour = last, tour
+        if last is not None:
+            self.session = last.resumed(self.session)
+            told = () if last.problem is None else (last.problem,)
+            self.session = replace(self.session, held=replace(held, notes=(*notes, *told)))
         self.told = self.session
         """What pages and robots are told, all of it on disk; read it from any thread."""
         self._name_of = name_of
-        self._desk = Desk(record, frame, settings, self.post)
-        self.frame, self.name, self._settings, self._notes = frame, name, settings, notes
+        self._heartbeat, self._archive = Heartbeat(deciding.silent_s), Archive(record, self.post)
+        self._desk, self._newcomers = Desk(record, self.post), Newcomers(self.post)
+        self._measurements = Measurements(self.post)
         self._host, self._port, self._cloud_points = host, port, cloud_points
-        self._capture = capture if capture is not None and capture.views else None
-        self.pages: dict[int, PageView] = {}
         self._open_viser = open_viser or self._open_server
-        self._opened: dict[int, ClientHandle] = {}
-        self._measuring: dict[int, asyncio.Task[None]] = {}
         self._listeners: dict[object, Callable[[], object]] = {}
+
+    @property
+    def held(self) -> Held:
+        """What everybody is told that is drawn on and measured in."""
+        assert self.told.held is not None
+        return self.told.held
+
+    @property
+    def frame(self) -> Frame:
+        """The frame of that."""
+        return self.held.frame
+
+    @property
+    def pages(self) -> dict[int, PageView]:
+        """The open pages, by their clients' numbers."""
+        return self._shown.views
+
+    @property
+    def panels(self) -> Panels:
+        """What all of them share."""
+        return self._shown.panels
 
     @property
     def address(self) -> str:
@@ -104,14 +138,10 @@ class Console:
         self._loop = self.server.get_event_loop()
         self._queue: asyncio.Queue[Item] = asyncio.Queue()
         self._settled = asyncio.Event()
-        self._pictures = Pictures(self.frame)
         self.server.gui.configure_theme(
             dark_mode=True, show_logo=False, show_share_button=False, brand_color=BRAND_COLOR
         )
-        self.panels = Panels(self.server, self.name, self._notes, self._post_from)
-        self._scene = SceneView(
-            self.server, self.frame, self._pictures.television(None, "picture"), self._cloud_points, self._post_from
-        )
+        self._shown = Pages(self.server, self.held, self._cloud_points, self.post, tour=self._tour)
         self.session = step(self.session, FrameOpened(seconds(), facts_of(self.frame), wall_s()))
         self.panels.show(self.session)
         self._running = asyncio.run_coroutine_threadsafe(self._run(), self._loop)
@@ -129,11 +159,9 @@ class Console:
         with redirect_stdout(io.StringIO()):
             self.server.stop()
 
-    def newer(self, capture: Capture) -> None:
-        """Watch over a capture that came after the frame that is held; of any thread."""
-        area = self.told.shown.area
-        event = FrameArrived(seconds(), *newer_facts(self.frame, capture, area))
-        self._loop.call_soon_threadsafe(self.post, event)
+    def newer(self, newer: Newer) -> None:
+        """Announce a recording that came after the frame that is held; of any thread."""
+        self._loop.call_soon_threadsafe(self.post, newer)
 
     def subscribe(self, changed: Callable[[], object]) -> Callable[[], object]:
         """Call `changed`, quickly done, after the session may have changed; returns what ends that. Of any thread."""
@@ -164,18 +192,23 @@ class Console:
             if Stopped() in items:
                 break
             for item in items:
-                with _logged("what happened was not taken in"):
+                with logged("what happened was not taken in"):
                     self._take(item)
-            self._measure_latest()
+            self.session = self._newcomers.compared(self.session)
+            self._measurements.start(self.session)
             self._desk.prepare(self.session)
-            only_time = all(isinstance(item, ClockTicked) for item in items)
-            with _logged("what happened was not recorded"):
+            self._newcomers.prepare(self.session)
+            browsing = {client_id: page.state.browsing for client_id, page in self.pages.items()}
+            self._archive.look(browsing, self._desk.written, self.session.decision.veiled, seconds())
+            only_time = all(isinstance(item, ClockTicked | PageHeard) for item in items)
+            with logged("what happened was not recorded"):
                 await self._tell(not only_time, any(isinstance(item, ClockTicked) for item in items))
-            if self._queue.empty() and not self._measuring and not self._desk.busy:
+            beside = (self._measurements, self._desk, self._newcomers, self._archive)
+            if self._queue.empty() and not any(one.busy for one in beside):
                 self._settled.set()
-        tasks = (ticking, *self._measuring.values(), *self._desk.stop())
-        for task in tasks:
-            task.cancel()
+        ticking.cancel()
+        beside = (self._measurements, self._desk, self._newcomers, self._archive)
+        tasks = (ticking, *(task for one in beside for task in one.stop()))
         await asyncio.gather(*tasks, return_exceptions=True)
 
     async def _tell(self, happened: bool, ticked: bool) -> None:
@@ -186,114 +219,63 @@ class Console:
         if not happened and face(before.decision) == face(self.told.decision):
             return
         for changed in list(self._listeners.values()):
-            with _logged("a listener was not told"):
+            with logged("a listener was not told"):
                 changed()
         await asyncio.to_thread(self._show)
-        self.server.flush()
         self._desk.shown(self.told, self.pages)
 
     def _take(self, item: Item) -> None:
         match item:
             case FromPage(client_id, event):
+                self.session = step(self.session, PageHeard(seconds(), client_id))
                 if isinstance(event, Event):
                     self.session = step(self.session, Done(client_id, event))
-                elif isinstance(event, DecisionEvent):
+                elif isinstance(event, DecisionEvent | BroughtBack):
                     self.session = step(self.session, event)
+                elif isinstance(event, Asked):
+                    self._archive.ask(client_id, event, self.session.decision.veiled)
                 elif client_id in self.pages:
                     self.pages[client_id].take(event, self.session.visible)
             case Reconstructed(revision):
-                del self._measuring[revision]
+                self._measurements.done(revision)
                 self.session = step(self.session, item)
             case Proposable():
                 self.session = self._desk.taken(self.session, item)
-            case ClockTicked() | PicturesSent() | FrameArrived():
+            case Fetched():
+                self.session = step(self.session, item.opening(seconds(), wall_s()))
+            case Listed() | Told() | Exported():
+                for client_id in set(item.pages) & set(self.pages):
+                    self.pages[client_id].told(item)
+            case Newer():
+                self.session = self._newcomers.came(self.session, item)
+            case NewerPrepared() | NewerReady() | NewerUnusable():
+                self.session = self._newcomers.taken_in(self.session, item)
+            case ClockTicked(at):
+                self.session = step(self.session, item)
+                self._heartbeat.ask(self.session.decision.control.holder, at, self.server.get_clients())
+            case PicturesSent() | PageHeard():
                 self.session = step(self.session, item)
             case PageOpened(client):
-                self._opened[client.client_id] = client
+                self._shown.opened(client)
                 name = self._name_of(client.client_id) or SOMEBODY
                 self.session = step(self.session, PageCame(seconds(), client.client_id, name))
             case PageClosed(client_id):
-                self._opened.pop(client_id, None)
-                self.pages.pop(client_id, None)
+                self._shown.closed(client_id)
                 self.session = step(self.session, PageWent(seconds(), client_id))
             case CameraMoved() | Stopped():
                 pass
 
-    def _measure_latest(self) -> None:
-        """Start measuring the drawing as it is now, unless that is done, under way, or has to wait for its turn."""
-        session, drawing = self.session, self.session.shown.complete
-        if drawing is None or session.up_to_date or session.revision in self._measuring:
-            return
-        if len(self._measuring) < MOST_MEASUREMENTS:
-            finely = self._capture if session.measured_once else None
-            task = asyncio.create_task(self._measure(session.revision, drawing, finely))
-            self._measuring[session.revision] = task
-
-    async def _measure(self, revision: int, drawing: Drawing, finely: Capture | None) -> None:
-        if finely is not None:
-            outcome = await asyncio.to_thread(measure_finely, finely, drawing, self._settings)
-        else:
-            outcome = await asyncio.to_thread(measure, self.frame, drawing, self._settings)
-        self.post(Reconstructed(revision, outcome, coarse=finely is None and self._capture is not None))
-
     def _show(self) -> None:
-        """Show the session on every page; runs in a thread, and only one at a time."""
-        session = self.told.visible
-        with _logged("the panels cannot be shown"):
-            self.panels.show(session)
-        with _logged("the scene cannot be shown"):
-            self._scene.show(session.reconstruction)
-        while self._opened:
-            client_id, client = self._opened.popitem()
-            with self._unless_gone(client_id):
-                self.pages[client_id] = self._new_page(client)
-        for client_id, page in list(self.pages.items()):
-            with self._unless_gone(client_id):
-                page.show(session)
-
-    @contextmanager
-    def _unless_gone(self, client_id: int) -> Iterator[None]:
-        """Drop a page that was closed while something was done with it; log what goes wrong with an open one."""
-        with _logged(f"page {client_id} cannot be shown"):
-            try:
-                yield
-            except Exception:
-                if client_id in self.server.get_clients():
-                    raise
-                self.pages.pop(client_id, None)
-
-    def _new_page(self, client: ClientHandle) -> PageView:
-        client.camera.on_update(self._camera_moved)
-        return PageView(
-            client,
-            self._pictures,
-            self.panels,
-            self._scene,
-            lambda event: self._post_from(client.client_id, event),
-        )
-
-    def _post_from(self, client_id: int, event: Event | DecisionEvent | PageEvent) -> None:
-        self.post(FromPage(client_id, event))
+        """Show the session on every page, and keep what is drawn and set; runs in a thread, and only one at a time."""
+        self._shown.show(self.told.visible, self.held)
+        if self._last is not None:
+            self._last.keep(self.told)
 
     async def _page_opened(self, client: ClientHandle) -> None:
         self.post(PageOpened(client))
 
     async def _page_closed(self, client: ClientHandle) -> None:
         self.post(PageClosed(client.client_id))
-
-    async def _camera_moved(self, camera: CameraHandle) -> None:
-        page = self.pages.get(camera.client.client_id)
-        if page is not None and page.state.view == "camera":
-            self.post(CameraMoved())
-
-
-@contextmanager
-def _logged(failure: str) -> Iterator[None]:
-    """Log a mistake of the program's own instead of letting it end the console."""
-    try:
-        yield
-    except Exception:
-        log.exception(failure)
 
 
 def _refuse_to_share(verbose: bool = True) -> None:

@@ -4,10 +4,15 @@ from dataclasses import dataclass
 
 from viser import ClientHandle
 
-from app.deciding.events import ClockTicked, DecisionEvent, FrameArrived, PicturesSent
+from app.archive import Exported, Fetched, Listed, Told
+from app.browsing import Asked
+from app.deciding.events import ClockTicked, DecisionEvent, PageHeard, PicturesSent
 from app.desk import Proposable
 from app.events import Event, Reconstructed
+from app.held import Newer
+from app.newer_steps import NewerPrepared, NewerReady, NewerUnusable
 from app.page import PageEvent
+from app.reopening import BroughtBack
 
 
 @dataclass(frozen=True)
@@ -28,7 +33,7 @@ class CameraMoved:
 @dataclass(frozen=True)
 class FromPage:
     client_id: int
-    event: Event | DecisionEvent | PageEvent
+    event: Event | DecisionEvent | PageEvent | Asked | BroughtBack
 
 
 @dataclass(frozen=True)
@@ -44,7 +49,15 @@ Item = (
     | Reconstructed
     | Proposable
     | ClockTicked
+    | PageHeard
     | PicturesSent
-    | FrameArrived
+    | Newer
+    | NewerPrepared
+    | NewerReady
+    | NewerUnusable
+    | Listed
+    | Told
+    | Exported
+    | Fetched
     | Stopped
 )

@@ -24,6 +24,7 @@ from app.deciding.states import Armed, Case, Decided, Deciding, Proposed, Reject
 from app.deciding.watchdog import problems
 from app.decision_text import control_html, decision_html
 from app.session import Session
+from app.showing import in_session_unit, set_to
 from rotrecon.primitives import Kind
 
 TICKS_HZ = 10.0
@@ -56,26 +57,26 @@ class DecisionPanel:
         deciding = session.decision
         case = deciding.case
         self._shown = 0 if case is None else case.number
-        _set(self._control, "content", control_html(deciding, self._page))
-        _set(self._decision, "content", decision_html(session))
+        set_to(self._control, "content", control_html(deciding, self._page))
+        set_to(self._decision, "content", in_session_unit(decision_html(session), session))
         self._show_control(deciding)
         holds = deciding.control.holder == self._page
         recorded = deciding.watched is not None and deciding.watched.held.source == "recorded"
         stale = bool(problems(deciding.watched, deciding.settings, deciding.now))
-        _set(self._again, "visible", holds and recorded and stale)
+        set_to(self._again, "visible", holds and recorded and stale and session.newer is None)
         for part in (self._class, self._name):
-            _set(part, "visible", holds and case is not None and deciding.veiled)
+            set_to(part, "visible", holds and case is not None and deciding.veiled)
         self._show_two(deciding, case if holds and not deciding.veiled else None)
         self._show_refusing(deciding, case if holds else None)
 
     def _show_control(self, deciding: Deciding) -> None:
         control = deciding.control
         holds = control.holder == self._page
-        _set(self._take, "visible", control.holder is None)
-        _set(self._give, "visible", holds and control.asked is None)
-        _set(self._ask, "visible", control.holder is not None and not holds and control.asked is None)
+        set_to(self._take, "visible", control.holder is None)
+        set_to(self._give, "visible", holds and control.asked is None)
+        set_to(self._ask, "visible", control.holder is not None and not holds and control.asked is None)
         for part in (self._yes, self._no):
-            _set(part, "visible", holds and control.asked is not None)
+            set_to(part, "visible", holds and control.asked is not None)
 
     def _show_two(self, deciding: Deciding, case: Case | None) -> None:
         """The two buttons of one proposal, made when all that shows it has been sent before them."""
@@ -87,23 +88,23 @@ class DecisionPanel:
         if self._two is None or case is None:
             return
         arm, hold = self._two
-        _set(arm, "disabled", not isinstance(case.stage, Proposed) or bool(obstacles(deciding)))
-        _set(hold, "disabled", not isinstance(case.stage, Armed))
+        set_to(arm, "disabled", not isinstance(case.stage, Proposed) or bool(obstacles(deciding)))
+        set_to(hold, "disabled", not isinstance(case.stage, Armed))
         word = "override" if case.override is not None else "confirm"
-        _set(hold, "label", f"2. Hold one second to {word}" + (f": {case.tool}" if case.tool else ""))
+        set_to(hold, "label", f"2. Hold one second to {word}" + (f": {case.tool}" if case.tool else ""))
         for button in self._two:
-            _set(button, "visible", isinstance(case.stage, Proposed | Armed))
+            set_to(button, "visible", isinstance(case.stage, Proposed | Armed))
 
     def _show_refusing(self, deciding: Deciding, case: Case | None) -> None:
         open_ = case is not None and not deciding.veiled and not isinstance(case.stage, Rejected)
-        _set(self._refusing, "visible", open_)
-        _set(self._reject, "visible", open_)
+        set_to(self._refusing, "visible", open_)
+        set_to(self._reject, "visible", open_)
         choosing = open_ and case is not None and not isinstance(case.stage, Decided)
         for part in (self._tool, self._override):
-            _set(part, "visible", choosing)
-        _set(self._drop, "visible", choosing and case is not None and case.override is not None)
+            set_to(part, "visible", choosing)
+        set_to(self._drop, "visible", choosing and case is not None and case.override is not None)
         if case is not None and choosing:
-            options = tuple(tool for tool in case.offer.tools if tool != case.offer.tool) or NOTHING
+            options = case.offer.choices or NOTHING
             if self._tool.options != options:
                 self._tool.options = options
 
@@ -153,7 +154,7 @@ class DecisionPanel:
             self._reject = self._button(
                 "Reject, for that reason", lambda at: RejectPressed(at, self._page, self._shown, self._reason.value), 1
             )
-            self._tool: GuiDropdownHandle[str] = self._gui.add_dropdown("Other tool", NOTHING, order=2)
+            self._tool: GuiDropdownHandle[str] = self._gui.add_dropdown("With the tool", NOTHING, order=2)
             self._override = self._button(
                 "Override, for that reason",
                 lambda at: OverrideTyped(at, self._page, self._shown, self._tool.value, self._reason.value),
@@ -178,9 +179,3 @@ class DecisionPanel:
 
         button.on_click(clicked)
         return button
-
-
-def _set(handle: Any, name: str, value: Any) -> None:
-    """Send an attribute only when it is another one."""
-    if getattr(handle, name) != value:
-        setattr(handle, name, value)

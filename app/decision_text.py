@@ -6,6 +6,7 @@ from math import ceil
 
 from app.deciding.states import Armed, Decided, Deciding, Proposed, Rejected, obstacles
 from app.deciding.watchdog import age_s
+from app.origins import from_
 from app.session import Session
 from app.wording import from_to
 from rotrecon.primitives import in_words
@@ -13,11 +14,6 @@ from rotrecon.reconstruction import Reconstruction
 from rotrecon.tools import NoTool, ToolProposal
 
 MINUTE_S = 60.0
-NOBODY_HTML = (
-    '<div class="rr-hint rr-amber" data-testid="hint">Nobody is in control: '
-    "take it in the Decision panel below, then draw.</div>"
-)
-"""What to do first."""
 STYLES = {"proposed": "", "armed": " rr-armed", "confirmed": " rr-done", "overridden": " rr-done", "rejected": ""}
 
 
@@ -80,13 +76,14 @@ def decision_html(session: Session) -> str:
     """The tool, what speaks for it and against deciding, how far it has got, and who is in control."""
     deciding = session.decision
     name, left = state_name(deciding), seconds_left(deciding)
-    countdown = "" if left is None else f'<b data-testid="countdown" class="rr-count">{left} s</b>'
+    countdown = "" if left is None else f'<b data-testid="countdown" class="rr-count" {from_("times")}>{left} s</b>'
     return (
         f'<div class="rr-decision" data-testid="decision" data-state="{name}">'
         f'<div class="rr-state{STYLES.get(name, "")}"><b>{escape(name.upper())}</b>{countdown}'
-        f"<span>{escape(_tool_line(session))}</span></div>"
-        f'<div class="rr-caption" data-testid="against">{_sentences(_lines(session))}</div>'
-        f'<div class="rr-caption rr-dim">{escape(frame_line(deciding))}</div></div>'
+        f"<span {from_('tool')}>{escape(_tool_line(session))}</span></div>"
+        f'<div class="rr-caption" data-testid="against" {from_("reasons", "hits", "reach")}>'
+        f"{_sentences(_lines(session))}</div>"
+        f'<div class="rr-caption rr-dim" {from_("age")}>{escape(frame_line(session))}</div></div>'
     )
 
 
@@ -104,17 +101,19 @@ def control_html(deciding: Deciding, page: int) -> str:
         who = "You ask" if control.asked.page == page else f"{control.name(control.asked.page)} asks"
         line += f" {who} for it: without an answer it is handed over in {left} s."
     style = "rr-control" if control.holder == page else "rr-control rr-amber"
-    return f'<div class="{style}" data-testid="control">{escape(line)}</div>'
+    return f'<div class="{style}" data-testid="control" {from_("times")}>{escape(line)}</div>'
 
 
-def frame_line(deciding: Deciding) -> str:
+def frame_line(session: Session) -> str:
     """Which frame is decided on."""
+    deciding = session.decision
     watched = deciding.watched
     if watched is None:
         return "No frame is held."
     if watched.held.source == "live":
         return f"Live frame, {age_min(deciding)} min old."
-    return f"Recorded scene, opened {age_min(deciding)} min ago: nothing of it stands in front of the arm now."
+    what = "Recorded scene" if session.entry is None else f"Frame of entry {session.entry} of the record"
+    return f"{what}, opened {age_min(deciding)} min ago: nothing of it stands in front of the arm now."
 
 
 def _tool_line(session: Session) -> str:
@@ -142,7 +141,8 @@ def _lines(session: Session) -> tuple[str, ...]:
         return obstacles(deciding)
     if isinstance(case.stage, Decided | Rejected):
         return ("A changed drawing is another proposal.",)
-    return (*obstacles(deciding), *_reasons(session))
+    past = () if case.override is None else case.in_the_way
+    return (*obstacles(deciding), *past, *_reasons(session))
 
 
 def _reasons(session: Session) -> tuple[str, ...]:

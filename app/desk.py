@@ -6,7 +6,7 @@ from collections.abc import Callable, Collection
 from dataclasses import dataclass
 
 from app.clock import seconds
-from app.deciding.events import ClockTicked, Offered, PicturesSent, Unmeasured
+from app.deciding.events import ClockTicked, Offered, PicturesSent, Unmeasured, Written
 from app.digest import evidence_digest
 from app.proposing import Evidence, evidence_shown, offered
 from app.record.entries import Entry
@@ -35,12 +35,15 @@ Posted = Proposable | ClockTicked | PicturesSent
 class Desk:
     """Everything but `write` runs in the console's event loop."""
 
-    def __init__(self, record: Record | None, frame: Frame, settings: Settings, post: Callable[[Posted], None]) -> None:
-        self._record, self._frame, self._settings, self._post = record, frame, settings, post
+    def __init__(self, record: Record | None, post: Callable[[Posted], None]) -> None:
+        self._record, self._post = record, post
         self._evidence: Evidence | None = None
         self._measured_in: dict[str | None, Frame] = {}
-        """Frames by the digest of entries that are not yet on disk: views have another one for every area."""
+        """Frames by the digest of entries that are not yet on disk: views have another one for every area, and the
+        frame that is held may be another one by then."""
         self._preparing: asyncio.Task[None] | None = None
+        self.written = 0
+        """How many times something was put on disk."""
 
     @property
     def busy(self) -> bool:
@@ -75,13 +78,14 @@ class Desk:
 
         After a failure it is tried `again` only when that is asked for.
         """
-        decision, evidence = session.decision, self._evidence
+        decision, evidence, settings = session.decision, self._evidence, session.settings
         if not decision.outbox or (decision.fault is not None and not again):
             return session
         for event in await asyncio.to_thread(
-            write, self._record, decision.outbox, self._frame_of, lambda: self._digest(evidence)
+            write, self._record, decision.outbox, self._frame_of, lambda: _digest(evidence, settings)
         ):
             session = step(session, event)
+            self.written += 1 if isinstance(event, Written) else 0
         waiting = {entry.digest for entry in session.decision.outbox}
         self._measured_in = {digest: frame for digest, frame in self._measured_in.items() if digest in waiting}
         if session.decision.fault not in (None, decision.fault):
@@ -102,19 +106,20 @@ class Desk:
         return (self._preparing,)
 
     def _frame_of(self, entry: Entry) -> Frame:
-        return self._measured_in.get(entry.digest, self._frame)
-
-    def _digest(self, evidence: Evidence | None) -> str | None:
-        """Of the evidence as it is at this moment."""
-        if evidence is None:
-            return None
-        return evidence_digest(evidence.result.frame, evidence.drawing, self._settings, evidence.result)
+        return self._measured_in[entry.digest]
 
     async def _prepare(self, evidence: Evidence, who: str) -> None:
         event: Offered | Unmeasured | None = None
         try:
-            event = await asyncio.to_thread(offered, evidence, who, self._settings)
+            event = await asyncio.to_thread(offered, evidence, who)
         except Exception:
             log.exception("the measurement cannot be proposed")
         finally:
             self._post(Proposable(evidence, event))
+
+
+def _digest(evidence: Evidence | None, settings: Settings) -> str | None:
+    """Of the evidence as it is at this moment."""
+    if evidence is None:
+        return None
+    return evidence_digest(evidence.result.frame, evidence.drawing, settings, evidence.result)

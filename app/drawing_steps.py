@@ -8,7 +8,8 @@ from app.events import (
     ContactPlaced,
     DiameterTyped,
     DirectionChosen,
-    Event,
+    DrawingEvent,
+    FrameTaken,
     HandleMoved,
     KindChosen,
     PageLeft,
@@ -24,6 +25,7 @@ from app.events import (
     VertexTakenBack,
 )
 from app.knowledge import with_knowledge
+from app.newer_steps import taken
 from app.object_drawing import (
     PARTS,
     SMALLEST_PX,
@@ -42,7 +44,7 @@ HISTORY_LENGTH = 200
 """Steps that can be undone: more than a person remembers, few enough to keep."""
 
 
-def drawn_on(session: Session, event: Event) -> Session:
+def drawn_on(session: Session, event: DrawingEvent) -> Session:
     """The session after an event; one that makes no sense leaves it as it is."""
     match event:
         case PointerDragged() | HandleMoved() if session.drag == "cancelled":
@@ -79,6 +81,8 @@ def drawn_on(session: Session, event: Event) -> Session:
             return _section_toggled(session, event.section)
         case SectionsRestored():
             return _changed(session, replace(session.objects[session.selected], excluded_sections=frozenset()))
+        case FrameTaken():
+            return taken(session)
         case Reconstructed():
             return _reconstructed(session, event)
 

@@ -9,6 +9,7 @@ from rotrecon.envelope import Box
 from rotrecon.frame import Frame
 from rotrecon.grasp_overlay import HIT_COLOR, MOUTH_COLOR, STEEL_COLOR, edges_of
 from rotrecon.reconstruction import Reconstruction
+from rotrecon.tool_table import Tool
 
 STEEL_OPACITY, MOUTH_OPACITY = 0.55, 0.12
 PARTS = ("left", "right", "body", "mouth")
@@ -18,12 +19,16 @@ NO_BOX = (np.zeros((3, 3)), np.array([[0, 1, 2]]))
 class EnvelopeView:
     """Nodes under `/world/envelope`, named the same for as long as the program runs."""
 
-    def __init__(self, scene: SceneApi, frame: Frame, point_size_m: float) -> None:
-        self._scene, self._frame, self._point_size_m = scene, frame, point_size_m
+    def __init__(self, scene: SceneApi) -> None:
+        self._scene = scene
 
-    def show(self, result: Reconstruction | None) -> None:
-        """Show the tool at its place, or hide it."""
-        grasp = None if result is None else grasp_in(result)
+    def hold(self, frame: Frame, point_size_m: float) -> None:
+        """The frame whose points the tool would hit, and how large they are shown."""
+        self._frame, self._point_size_m = frame, point_size_m
+
+    def show(self, result: Reconstruction | None, tool: Tool | None = None) -> None:
+        """Show a tool at its place, by default the one that is proposed or may fit; or hide it."""
+        grasp = None if result is None else grasp_in(result, tool)
         boxes = (None,) * len(PARTS) if grasp is None else (*grasp.envelope.solid, grasp.envelope.mouth)
         for name, box in zip(PARTS, boxes, strict=True):
             self._show_box(name, box)

@@ -3,6 +3,7 @@
 from dataclasses import dataclass
 
 from app.object_drawing import Part, Pixel
+from app.units import Unit
 from rotrecon.drawing import Direction
 from rotrecon.primitives import Kind
 from rotrecon.reconstruction import Reconstruction
@@ -135,6 +136,26 @@ class SectionsRestored:
 
 
 @dataclass(frozen=True)
+class SettingTyped:
+    """A setting, by its key in `app.adjustable`, is to have another value, in the units of the settings."""
+
+    key: str
+    value: float | str
+
+
+@dataclass(frozen=True)
+class UnitChosen:
+    """Lengths are shown in another unit."""
+
+    unit: Unit
+
+
+@dataclass(frozen=True)
+class FrameTaken:
+    """The newer frame that waits is to be held from now on."""
+
+
+@dataclass(frozen=True)
 class Reconstructed:
     """A measurement has come back."""
 
@@ -144,7 +165,7 @@ class Reconstructed:
     """On the depth of the whole frame, where that is to be matched again in the area, finely."""
 
 
-Event = (
+DrawingEvent = (
     PointerDragged
     | VertexClicked
     | HandleMoved
@@ -162,5 +183,8 @@ Event = (
     | ContactPlaced
     | SectionToggled
     | SectionsRestored
+    | FrameTaken
     | Reconstructed
 )
+"""What makes another drawing, or another result of it."""
+Event = DrawingEvent | SettingTyped | UnitChosen

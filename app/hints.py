@@ -26,8 +26,8 @@ def warning(session: Session) -> str | None:
             return None
 
 
-def hint(session: Session) -> str:
-    """What the operator can do next, in one line."""
+def hint(session: Session, led: str | None = None) -> str:
+    """What the operator can do next, in one line; `led` is what a tour says, where there is nothing more urgent."""
     warned = warning(session)
     if warned is not None:
         return warned
@@ -39,7 +39,7 @@ def hint(session: Session) -> str:
         return "Click the next corner, or the first one (or Enter) to close the polygon. Escape drops it."
     shown = session.shown
     if shown.area is None and shown.axis is None:
-        return "Drag a rectangle round the object, or click the corners of a polygon."
+        return led or "Drag a rectangle round the object, or click the corners of a polygon."
     if shown.area is None:
         choose = "choose Area, and " if session.tool == "axis" else ""
         return f"Now draw the area: {choose}drag a rectangle round the object."
@@ -49,6 +49,8 @@ def hint(session: Session) -> str:
         if session.measured_once:
             return "Measured coarsely; the area is being matched again, finely \N{HORIZONTAL ELLIPSIS}"
         return "Measuring \N{HORIZONTAL ELLIPSIS}"
+    if led is not None:
+        return led
     if shown.proposed:
         return "Measured. The axis is proposed: drag its ends, or draw another (shift + drag, or choose Axis)."
     return "Measured. Drag the handles to correct the drawing, or draw anew for another object."

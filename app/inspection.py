@@ -9,6 +9,7 @@ from rotrecon.next_view import NextView, next_view
 from rotrecon.overlay import first_cut_line
 from rotrecon.reconstruction import Reconstruction
 from rotrecon.residuals import Residuals, residuals_of
+from rotrecon.tool_table import Tool
 
 
 @lru_cache(maxsize=2)
@@ -17,11 +18,15 @@ def clearances_in(result: Reconstruction) -> tuple[Clearance, ...]:
     return clearances_of(result)
 
 
-@lru_cache(maxsize=2)
-def grasp_in(result: Reconstruction) -> Grasp | None:
-    """The tool that is proposed or may fit, at the place that the operator has chosen."""
-    tool = shown_tool(result)
-    return None if tool is None else grasp_of(result, tool)
+def grasp_in(result: Reconstruction, tool: Tool | None = None) -> Grasp | None:
+    """A tool, else the one that is proposed or may fit, at the place that the operator has chosen."""
+    tool = tool or shown_tool(result)
+    return None if tool is None else _grasp(result, tool)
+
+
+@lru_cache(maxsize=8)
+def _grasp(result: Reconstruction, tool: Tool) -> Grasp | None:
+    return grasp_of(result, tool)
 
 
 @lru_cache(maxsize=2)

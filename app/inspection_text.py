@@ -6,6 +6,7 @@ from typing import Any
 
 from app.answers import answer_of
 from app.object_drawing import Pixel
+from app.origins import from_
 from app.wording import candidate_name, measured
 from rotrecon.distance import distance_between
 from rotrecon.frame import Frame
@@ -26,7 +27,7 @@ def residuals_html(residuals: Residuals | None) -> str:
     colors = ", ".join(f"rgb{color}" for color in (BEHIND, BETWEEN, BEFORE))
     off_mm = 1000 * float((residuals.off_m**2).mean() ** 0.5)
     return (
-        f'<div class="rr-caption" data-testid="residuals">'
+        f'<div class="rr-caption" data-testid="residuals" {from_("residuals", "rms_mm")}>'
         f'<div class="rr-bar" style="background: linear-gradient(to right, {colors})"></div>'
         f'<div class="rr-ends"><span>{end_mm} inside</span><span>on the solid</span><span>{end_mm} outside</span></div>'
         f"{len(residuals.off_m)} pixels, {off_mm:.2f} mm off (RMS).</div>"
@@ -45,7 +46,8 @@ def candidates_html(result: Reconstruction | None) -> str:
     rows.append(("", [escape(speaks(one, candidates)) for one in candidates]))
     cells = "".join(f"<tr><th>{name}</th>{''.join(f'<td>{text}</td>' for text in texts)}</tr>" for name, texts in rows)
     return (
-        f'<div class="rr-why" data-testid="candidates"><h4>Candidates</h4><table class="rr-side">{cells}</table></div>'
+        f'<div class="rr-why" data-testid="candidates" {from_("diameter_mm", "score")}><h4>Candidates</h4>'
+        f'<table class="rr-side">{cells}</table></div>'
     )
 
 
@@ -89,4 +91,5 @@ def distance_html(frame: Frame, measuring: bool, ends_px: tuple[Pixel, ...]) -> 
             length_mm = 1000 * found.length_m
             interval = None if off_mm is None else (length_mm - off_mm, length_mm + off_mm)
             text, exact = f"{measured(length_mm, interval, ' mm')} between the two points.", f"{length_mm:.3f}"
-    return f'<div class="rr-caption" data-testid="distance" data-value="{exact}">{escape(text)}</div>'
+    origin = from_("distance")
+    return f'<div class="rr-caption" data-testid="distance" data-value="{exact}" {origin}>{escape(text)}</div>'

@@ -10,16 +10,15 @@ import typer
 from app.describe import describe
 from app.record.entries import EntryKind, Head, Written
 from app.record.errors import NoSuchEntry
-from app.record.evidence import Difference, Replay, evidence_of, replay, said_with
+from app.record.evidence import evidence_of, replay, said_with
 from app.record.store import Record
 from app.record.verify import verify
+from app.replay_text import replay_lines
 from app.writing import write_file
 from rotrecon.drawing import DrawingError
 
 DIFFERENT, NOTHING = 1, 3
 """Exit codes: a record that is not whole or a number that is not the same; nothing there to show or compute."""
-SHOWN_DIFFERENCES = 20
-"""Where one number differs most others do."""
 
 Data = Annotated[
     Path | None, typer.Option("--data", metavar="DIR", help="The record's folder; the user's own when left out.")
@@ -116,24 +115,9 @@ def replay_(number: Number, data: Data = None) -> None:
             again = replay(evidence_of(record, record.entry(number)))
         except (NoSuchEntry, DrawingError) as error:
             _nothing(error)
-    typer.echo(_replayed(number, again))
+    typer.echo(replay_lines(number, again))
     if not again.same:
         raise typer.Exit(DIFFERENT)
-
-
-def _replayed(number: int, again: Replay) -> str:
-    if again.same:
-        lines = [f"entry {number}: all {again.numbers} numbers are the same"]
-    else:
-        lines = [f"entry {number}: {len(again.differences)} of {again.numbers} numbers are not the same"]
-        lines += [_difference(one) for one in again.differences[:SHOWN_DIFFERENCES]]
-        if len(again.differences) > SHOWN_DIFFERENCES:
-            lines.append(f"  ... and {len(again.differences) - SHOWN_DIFFERENCES} more")
-    return "\n".join(lines + [f"{_difference(one)} (version)" for one in again.versions])
-
-
-def _difference(one: Difference) -> str:
-    return f"  {one.name}: recorded {json.dumps(one.recorded)}, now {json.dumps(one.now)}"
 
 
 def _line(written: Written) -> str:

@@ -1,11 +1,11 @@
 """What the watch over frames has to know of them, and whether a newer one shows something else in the area."""
 
+from dataclasses import replace
 from datetime import datetime
 from hashlib import sha256
 
 import numpy as np
 
-from app.clock import wall_s
 from app.deciding.watchdog import FrameFacts
 from rotrecon.capture import Capture
 from rotrecon.drawing import AreaOfInterest
@@ -16,6 +16,9 @@ CHANGED_LEVELS = 8.0
 SAME_POSE = 1e-3
 """Metres, and radians: how well an arm repeats a pose. From elsewhere pixels cannot be compared."""
 
+ENOUGH_PIXELS = 250_000
+"""Of an area that are compared: more tell nothing else, and everybody waits for it."""
+
 
 def facts_of(frame: Frame) -> FrameFacts:
     """Of a recorded frame; its pixels are its picture's and its depths."""
@@ -24,14 +27,22 @@ def facts_of(frame: Frame) -> FrameFacts:
     return FrameFacts(digest.hexdigest(), captured_s=_unix_s(frame.captured_at))
 
 
-def newer_facts(held: Frame, capture: Capture, area: AreaOfInterest | None) -> tuple[FrameFacts, float, bool]:
-    """Of a capture that came after the frame that is held: facts, this machine's time, whether the area has changed."""
+def newer_facts(capture: Capture, arrived_at: datetime) -> FrameFacts:
+    """Of a recording that was pushed in; where it does not say when it was taken, it is as old as its arrival."""
     if capture.recorded is not None:
-        newer = capture.recorded
-        return facts_of(newer), wall_s(), has_changed(held, newer.image, newer.T_base_camera, area)
-    digest = sha256(b"".join(view.image.tobytes() for view in capture.views))
-    first = capture.views[0]
-    return FrameFacts(digest.hexdigest()), wall_s(), has_changed(held, first.image, first.T_base_camera, area)
+        recorded = facts_of(capture.recorded)
+        captured_s = arrived_at.timestamp() if recorded.captured_s is None else recorded.captured_s
+        return replace(recorded, source="live", captured_s=captured_s)
+    digest = sha256()
+    for view in capture.views:
+        digest.update(view.image.tobytes())
+    return FrameFacts(digest.hexdigest(), "live", captured_s=arrived_at.timestamp())
+
+
+def shows_change(held: Frame, newer: Capture, area: AreaOfInterest | None) -> bool:
+    """Whether a newer recording shows something else in the area than the frame that is held."""
+    first = newer.views[0] if newer.recorded is None else newer.recorded
+    return has_changed(held, first.image, first.T_base_camera, area)
 
 
 def has_changed(held: Frame, image: np.ndarray, T_base_camera: np.ndarray, area: AreaOfInterest | None) -> bool:
@@ -45,7 +56,9 @@ def has_changed(held: Frame, image: np.ndarray, T_base_camera: np.ndarray, area:
     if area is not None:
         (left, top), (right, bottom) = np.min(area.vertices_px, axis=0), np.max(area.vertices_px, axis=0)
         window = np.s_[int(top) : int(bottom) + 1, int(left) : int(right) + 1]
-    difference = image[window].astype(np.float32) - held.image[window]
+    newer, before = image[window], held.image[window]
+    step = max(1, int(np.sqrt(newer[..., 0].size / ENOUGH_PIXELS)))
+    difference = newer[::step, ::step].astype(np.float32) - before[::step, ::step]
     return bool(np.abs(difference).mean() > CHANGED_LEVELS)
 
 

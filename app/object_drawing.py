@@ -57,6 +57,22 @@ class ObjectDrawing:
         return ((min(columns) + max(columns)) / 2, (min(rows) + max(rows)) / 2)
 
 
+def drawn_as(drawing: Drawing) -> ObjectDrawing:
+    """What was drawn for a drawing that can be measured; an axis that it lacks is proposed again."""
+    limits = drawing.constraints.radius_m
+    # to a nanometre: what was typed, and not what halving it has left of it
+    low_mm, high_mm = UNKNOWN_MM if limits is None else (round(2000 * radius_m, 6) for radius_m in limits)
+    return ObjectDrawing(
+        drawing.area,
+        drawing.axis,
+        drawing.kind,
+        drawing.excluded_sections,
+        (low_mm, high_mm if isfinite(high_mm) else 0.0),
+        drawing.constraints.direction,
+        drawing.contact,
+    )
+
+
 def with_area(drawn: ObjectDrawing, area: AreaOfInterest) -> ObjectDrawing:
     """The object with a new area; an axis that lies elsewhere was meant for another object."""
     drawn = without_proposal(drawn)

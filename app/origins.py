@@ -20,3 +20,15 @@ def origins_html() -> str:
         for field, (name, text) in origins().items()
     )
     return f'<div class="rr-help rr-origins" data-testid="origins">{"".join(folded)}</div>'
+
+
+def from_(*fields: str) -> str:
+    """Attributes of an element whose numbers come from these: by name, and in words when it is pointed at."""
+    texts = (": ".join(origins()[field]) for field in fields)
+    return f'data-from="{" ".join(fields)}" title="{escape(" ".join(texts))}"'
+
+
+@cache
+def field_named(name: str) -> str:
+    """The field of a name on the page, whatever its capitals; raises KeyError."""
+    return {known.casefold(): field for field, (known, _) in origins().items()}[name.casefold()]

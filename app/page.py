@@ -1,9 +1,10 @@
 """What one page shows, which is nobody else's business: its view, zoom, layers and the section it looks at."""
 
-from dataclasses import dataclass, replace
+from dataclasses import dataclass, field, replace
 from math import isfinite
 from typing import Literal, get_args
 
+from app.browsing import Browsed, Browsing, EntryChosen, ListFiltered, ListTurned, browse
 from app.object_drawing import Pixel
 
 ViewName = Literal["camera", "3D"]
@@ -40,6 +41,10 @@ class PageState:
     """Whether clicks on the picture are the ends of a distance, and not corners of an area."""
     ends_px: tuple[Pixel, ...] = ()
     """Of that distance: none, one or two."""
+    tour: int | None = None
+    """How many stations of the tour are ticked off; None when it is closed."""
+    browsing: Browsing = field(default_factory=Browsing)
+    """What is looked at of the record."""
 
 
 @dataclass(frozen=True)
@@ -114,6 +119,16 @@ class EndPointed:
     point_px: Pixel
 
 
+@dataclass(frozen=True)
+class TourStarted:
+    """From its first station on."""
+
+
+@dataclass(frozen=True)
+class TourClosed:
+    """For good, unless it is started again."""
+
+
 PageEvent = (
     ViewChosen
     | OpacityChosen
@@ -128,6 +143,9 @@ PageEvent = (
     | StepChosen
     | MeasuringChosen
     | EndPointed
+    | TourStarted
+    | TourClosed
+    | Browsed
 )
 
 
@@ -159,8 +177,14 @@ def page_step(page: PageState, event: PageEvent, section_count: int, middle_px: 
             return replace(page, step=max(step, 0))
         case MeasuringChosen(measuring):
             return replace(page, measuring=bool(measuring), ends_px=())
+        case TourStarted():
+            return replace(page, tour=0, section=None)
+        case TourClosed():
+            return replace(page, tour=None)
         case EndPointed(point) if page.measuring and all(isfinite(value) for value in point):
             return replace(page, ends_px=(point,) if len(page.ends_px) == 2 else (*page.ends_px, point))
+        case ListFiltered() | ListTurned() | EntryChosen():
+            return replace(page, browsing=browse(page.browsing, event))
         case _:
             return page
 

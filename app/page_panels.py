@@ -16,11 +16,16 @@ from app.charts import (
     radius_scales,
     section_count,
 )
+from app.encoded import put
 from app.events import Event, SectionsRestored, SectionToggled
+from app.origins import from_
 from app.page import LAYERS, DarkChosen, LayerChosen, OpacityChosen, PageEvent, PageState, SectionChosen
 from app.panels import Panels
 from app.pictures import Pictures
 from app.section_drawing import line_text, section_svg, section_text
+from app.session import Session
+from app.showing import set_to
+from app.units import MM_PER, Unit, in_unit, labels_in, scales_in
 from rotrecon.overlay import LIGHT_BLUE, NAVY, RED, YELLOW
 from rotrecon.reconstruction import Reconstruction
 
@@ -44,31 +49,37 @@ class PagePanels:
         self._crop_of: object = None
         self._sections_of: object = None
 
-    def show(
-        self, result: Reconstruction | None, page: PageState, section: int, excluded: frozenset[int], moving: bool
-    ) -> None:
+    def hold(self, pictures: Pictures) -> None:
+        """The pictures of another frame."""
+        self._pictures, self._television_of, self._crop_of = pictures, None, None
+
+    def show(self, session: Session, page: PageState, section: int, moving: bool) -> None:
         """Bring this page's panels up to date; pictures wait for the end of a drag."""
+        result = session.reconstruction
         if not moving:
             self._show_television(result, page)
-        self._show_sections(result, section, excluded)
+        set_to(self._depth_bar, "content", in_unit(depth_bar(self._pictures.depth_range_m), session.unit))
+        self._show_sections(result, section, session.shown.excluded_sections, session.unit)
 
     def _show_television(self, result: Reconstruction | None, page: PageState) -> None:
         if self._television_of != (result, page.layer):
             self._television_of = (result, page.layer)
-            self._television.image = self._pictures.television(result, page.layer)
+            put(self._television, self._pictures.sent_television(result, page.layer))
         if page.last_point_px is not None and self._crop_of != page.last_point_px:
             self._crop_of = page.last_point_px
             self._crop.image = self._pictures.crop(page.last_point_px)
             self._crop.visible = True
 
-    def _show_sections(self, result: Reconstruction | None, section: int, excluded: frozenset[int]) -> None:
-        if self._sections_of == (result, section, excluded):
+    def _show_sections(self, result: Reconstruction | None, section: int, excluded: frozenset[int], unit: Unit) -> None:
+        if self._sections_of == (result, section, excluded, unit):
             return
-        self._sections_of = (result, section, excluded)
+        self._sections_of = (result, section, excluded, unit)
         count = section_count(result)
         chart = radius_chart(result, section)
-        self._chart.data = chart
-        scales = radius_scales(chart)
+        self._chart.data = tuple(column / MM_PER[unit] for column in chart)
+        set_to(self._chart, "axes", labels_in(RADIUS_AXES, unit))
+        set_to(self._chart, "series", labels_in(RADIUS_SERIES, unit))
+        scales = scales_in(radius_scales(chart), ("x", "y"), unit)
         if scales != self._chart.scales:
             self._chart.scales = scales
         self._section = section
@@ -80,11 +91,7 @@ class PagePanels:
             part.visible = count > 0
         self._restore.visible = bool(excluded)
         self._exclude.label = "Put this section back" if section in excluded else "Exclude this section"
-        text, line = escape(section_text(result, section)), escape(line_text(result, section))
-        self._plane.content = (
-            f'<div class="rr-caption" data-testid="section">{text}</div>{section_svg(result, section)}'
-            f'<div class="rr-caption" data-testid="line">{line}</div>'
-        )
+        self._plane.content = in_unit(section_html(result, section), unit)
 
     def _add_sections(self) -> None:
         chart = radius_chart(None, 0)
@@ -110,9 +117,7 @@ class PagePanels:
     def _add_picture(self) -> None:
         opacity = self._gui.add_slider("Depth, %", 0, 100, 5, 0)
         opacity.on_update(self._choosing(lambda percent: OpacityChosen(float(percent) / 100)))
-        near_m, far_m = self._pictures.depth_range_m
-        ends = f"<span>{1000 * near_m:.0f} mm</span><span>{1000 * far_m:.0f} mm</span>"
-        self._gui.add_html(f'<div class="rr-caption"><div class="rr-bar"></div><div class="rr-ends">{ends}</div></div>')
+        self._depth_bar = self._gui.add_html("")
         layer = self._gui.add_dropdown("Frame shows", LAYERS, initial_value="segmentation")
         layer.on_update(self._choosing(LayerChosen))
         self._television = self._gui.add_image(
@@ -138,3 +143,20 @@ class PagePanels:
                 self._post(event_of(event.target.value))
 
         return chosen
+
+
+def section_html(result: Reconstruction | None, section: int) -> str:
+    """One section in words and in its own plane, and what was done on the line of pixels that it was made of."""
+    text, line = escape(section_text(result, section)), escape(line_text(result, section))
+    return (
+        f'<div class="rr-caption" data-testid="section" {from_("section_radius", "section_rms")}>{text}</div>'
+        f"{section_svg(result, section)}"
+        f'<div class="rr-caption" data-testid="line" {from_("steps", "mean_sigma")}>{line}</div>'
+    )
+
+
+def depth_bar(range_m: tuple[float, float]) -> str:
+    """The colours of the depth map, and which depths are at their two ends."""
+    ends = "".join(f"<span>{1000 * end_m:.0f} mm</span>" for end_m in range_m)
+    origin = from_("depth_range")
+    return f'<div class="rr-caption" {origin}><div class="rr-bar"></div><div class="rr-ends">{ends}</div></div>'

@@ -1,17 +1,25 @@
 """One open page: what it shows of the session, its own choices, and what is done on its picture."""
 
 from collections.abc import Callable
+from dataclasses import replace
 
 import numpy as np
 from viser import ClientHandle, NotificationHandle, SceneNodeDragEvent, SceneNodePointerEvent
 
+from app.archive import Exported, Listed, Told
+from app.browsing import Asked
 from app.camera_view import CameraView
 from app.charts import section_count
 from app.deciding.events import DecisionEvent
 from app.deciding.states import Said
 from app.decision_panel import DecisionPanel
+from app.encoded import put
 from app.events import Event, HandleMoved, PointerDragged, VertexClicked
+from app.hint_panel import HintPanel
+from app.history_panel import HistoryPanel, Looked
+from app.inspection import residuals_in
 from app.inspection_panel import InspectionPanel
+from app.newer_panel import NewerPanel
 from app.object_drawing import Part, Pixel, on_frame
 from app.page import (
     EndPointed,
@@ -29,9 +37,13 @@ from app.page_panels import PagePanels
 from app.panels import Panels
 from app.pictures import Pictures
 from app.pointer import PixelFinder
+from app.reopening import BroughtBack
 from app.scene_view import SceneView
 from app.session import Notice, Session
+from app.showing import in_session_unit
+from app.tour import ticked
 from rotrecon.reconstruction import Reconstruction
+from rotrecon.tool_table import Tool
 
 NOTICE_SECONDS = 10.0
 BRAND_COLOR = (60, 147, 208)
@@ -46,12 +58,18 @@ class PageView:
         pictures: Pictures,
         shared: Panels,
         scene: SceneView,
-        post: Callable[[Event | DecisionEvent | PageEvent], None],
+        post: Callable[[Event | DecisionEvent | PageEvent | Asked | BroughtBack], None],
+        tour: bool = False,
     ) -> None:
-        self.client, self.state = client, PageState()
+        self.client, self.state = client, PageState(tour=0 if tour else None)
         self._pictures, self._scene, self._post = pictures, scene, post
         self._pixels = PixelFinder(pictures.frame)
+        self._hint = HintPanel(client, shared.help, post)
         self._panels = PagePanels(client, shared, pictures, post)
+        self._newer = NewerPanel(client, shared.decision, post)
+        self._history = HistoryPanel(client, shared.history, post)
+        self.looked = Looked()
+        """What this page was told of the record."""
         self._decision = DecisionPanel(client, shared.decision, post)
         self._inspection = InspectionPanel(client.gui, shared.stages, pictures, post)
         self._camera_view = CameraView(
@@ -59,7 +77,8 @@ class PageView:
         )
         self._world = client.scene.add_frame("/world", show_axes=False)
         self._drag_start_px: Pixel = (0.0, 0.0)
-        self._picture_of: object = (None, 0.0, None, "nothing", ())
+        self._picture_of: float | None = 0.0
+        self._layer_of: object = (None, 0.0, 0, "nothing", (), None)
         self._lit: object = None
         self._view = ""
         self._dark = True
@@ -86,6 +105,30 @@ class PageView:
         middle_px = session.shown.middle_px if not session.vertices_px else None
         self.state = page_step(self.state, event, section_count(result), middle_px)
 
+    def told(self, item: Listed | Told | Exported) -> None:
+        """Take what this page has asked of the record."""
+        match item:
+            case Listed(listing=listing, problem=problem):
+                self.looked = replace(self.looked, listing=listing, problem=problem)
+            case Told(number=number, text=text, good=good):
+                self.looked = replace(self.looked, number=number, told=text, good=good)
+            case Exported(number=number, name=name, content=content):
+                self.client.send_file_download(name, content)
+                told = f"{name} is ready: save it from the notification."
+                self.looked = replace(self.looked, number=number, told=told, good=True)
+
+    def hold(self, pictures: Pictures) -> None:
+        """Show another frame; where this page looked is kept when the picture has the same size."""
+        before = self._pictures.frame.image.shape
+        self._pictures, self._pixels = pictures, PixelFinder(pictures.frame)
+        self.state = replace(self.state, ends_px=())
+        if pictures.frame.image.shape != before:
+            self.state = replace(self.state, zoom=1.0, center_px=None, last_point_px=None)
+        self._picture_of = self._layer_of = self._lit = None
+        self._camera_view.hold(pictures.frame)
+        self._panels.hold(pictures)
+        self._inspection.hold(pictures)
+
     def _section_under(self, pointed: SectionPointed, result: Reconstruction | None) -> int | None:
         if result is None or result.sections is None:
             return None
@@ -94,24 +137,37 @@ class PageView:
 
     def show(self, session: Session) -> None:
         """Bring everything on this page up to date."""
+        self.state = ticked(self.state, session, self.client.client_id)
         result, page = session.reconstruction, self.state
         section = section_shown(page, section_count(result))
         moving = session.preview is not None or not session.up_to_date
+        self._hint.show(session, page)
         self._show_notice(session)
         self._show_view()
         if page.view == "camera":
             self._camera_view.look(page)
         self._camera_view.show(session.shown, session.vertices_px, page)
         if not moving:
-            self._show_picture(result, section)
-        if self._lit != (result, section) and page.view == "3D":
-            self._lit = (result, section)
-            self._scene.light_section(self.client, result, section)
-        self._panels.show(result, page, section, session.shown.excluded_sections, moving)
+            self._show_picture(result, section, session.overriding)
+        if page.view == "3D":
+            self._show_own_in_scene(result, section)
+        self._panels.show(session, page, section, moving)
+        self._newer.show(session)
+        self._history.show(session, self.looked, page.browsing)
         self._decision.show(session)
         self._say(session)
         if not moving:
-            self._inspection.show(result, page, section)
+            self._inspection.show(result, page, section, session.unit)
+
+    def _show_own_in_scene(self, result: Reconstruction | None, section: int) -> None:
+        """What this page alone has in the 3D scene: a section lit, and residuals."""
+        key = (result, section, self.state.overlay)
+        if self._lit == key:
+            return
+        self._lit = key
+        self._scene.light_section(self.client, result, section)
+        is_colored = result is not None and self.state.overlay == "residuals"
+        self._scene.color_residuals(self.client, residuals_in(result) if result is not None and is_colored else None)
 
     def _show_view(self) -> None:
         """Change the standpoint, and what is seen from it, when the other view was chosen."""
@@ -131,18 +187,19 @@ class PageView:
         self._world.visible = not in_camera
         if in_camera:
             self._lit = None
-            self._scene.hide_section(self.client)
+            self._scene.hide_own(self.client)
         else:
             self._scene.look(self.client, self._world_pose)
 
-    def _show_picture(self, result: Reconstruction | None, section: int) -> None:
-        opacity = self.state.depth_opacity
-        overlay, ends_px = self.state.overlay, self.state.ends_px
-        key = (result, opacity, None if result is None else section, overlay, ends_px)
-        if key != self._picture_of:
-            self._picture_of = key
-            image = self._pictures.camera_view(result, opacity, section, overlay)
-            self._camera_view.picture.image = self._pictures.with_ends(image, ends_px) if ends_px else image
+    def _show_picture(self, result: Reconstruction | None, section: int, tool: Tool | None) -> None:
+        page = self.state
+        if page.depth_opacity != self._picture_of:
+            self._picture_of = page.depth_opacity
+            put(self._camera_view.picture, self._pictures.sent_picture(page.depth_opacity))
+        key = (result, page.depth_opacity, 0 if result is None else section, page.overlay, page.ends_px, tool)
+        if key != self._layer_of:
+            self._layer_of = key
+            self._camera_view.cover(self._pictures.sent_layer(*key))
 
     def _show_notice(self, session: Session) -> None:
         """Tell of a failure, and take that away when it is no longer one of what is shown."""
@@ -154,7 +211,10 @@ class PageView:
         self._notice = session.notice
         if self._notice is not None:
             self._notification = self.client.add_notification(
-                self._notice.title, self._notice.text, color="orange", auto_close_seconds=NOTICE_SECONDS
+                self._notice.title,
+                in_session_unit(self._notice.text, session),
+                color="orange",
+                auto_close_seconds=NOTICE_SECONDS,
             )
 
     def _say(self, session: Session) -> None:

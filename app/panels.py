@@ -6,7 +6,6 @@ from typing import Any
 
 from viser import CommandHandle, GuiEvent, ViserServer
 
-from app.decision_text import NOBODY_HTML
 from app.events import (
     Cancelled,
     Cleared,
@@ -20,20 +19,26 @@ from app.events import (
     Undone,
     VertexTakenBack,
 )
+from app.held import Held
 from app.knowledge import DIRECTION_NAMES, knowledge_text
+from app.newer_panel import newer_html
 from app.object_drawing import UNKNOWN_MM
 from app.origins import origins_html
 from app.page import PageEvent, SectionStepped, ViewChosen, Zoomed
-from app.result_text import hint_html, result_html, why_html
+from app.result_text import result_html, why_html
 from app.session import Session
+from app.settings_panel import SettingsPanel
+from app.showing import in_session_unit, set_to, show_unit
 from app.static_files import static_text
 from app.tool_panel import ToolPanel
+from app.units import Unit, from_mm, in_unit, to_mm
 from rotrecon.primitives import KINDS
 
 PANEL_WIDTH_PX = 390
-TABS = ("Decision", "Sections", "Stages", "Tool", "Picture", "Why", "Buttons", "Help")
+TABS = ("Decision", "Sections", "Stages", "Tool", "Picture", "Why", "History", "Buttons", "Settings", "Help")
 AUTO = "auto"
 KNOWN = "What is known"
+DIAMETER, DIAMETER_STEP_MM = "Diameter from / to, {}", 0.1
 DIRECTIONS = {name: DirectionChosen(direction) for direction, name in DIRECTION_NAMES.items()}
 TOOLS = {"Area": ToolChosen("area"), "Axis": ToolChosen("axis")}
 POLYGON = {"Close": PolygonClosed(), "Corner back": VertexTakenBack(), "Cancel": Cancelled()}
@@ -62,26 +67,28 @@ Post = Callable[[int, Event | PageEvent], None]
 class Panels:
     """Controls and texts that belong to the server, so that all pages show the same."""
 
-    def __init__(self, server: ViserServer, name: str, notes: tuple[str, ...], post: Post) -> None:
+    def __init__(self, server: ViserServer, held: Held, post: Post) -> None:
         self._gui, self._post = server.gui, post
+        self._unit: Unit = "mm"
         self.camera_commands: list[CommandHandle] = []
         """Commands that move the camera of the page they come from and do nothing else."""
         self._gui.set_panel_label("rotrecon")
         self._gui.main_panel.dock_right()
         self._gui.main_panel.set_width(PANEL_WIDTH_PX)
         self._gui.add_html(f"<style>{static_text('console.css')}</style>")
-        self._hint = self._gui.add_html("")
+        self._newer = self._gui.add_html("")
         self._result = self._gui.add_html("")
+        self._add_buttons("View", VIEW)
+        self._add_buttons("Drawing", HISTORY)
+        self._tool = self._gui.add_dropdown("A drag draws", tuple(TOOLS), hint="Shift + drag: the axis")
+        self._tool.on_update(self._choosing(TOOLS.get))
         self._kind = self._gui.add_dropdown("Object is a", (AUTO, *KINDS), initial_value=AUTO)
         self._kind.on_update(self._choosing(lambda value: KindChosen(None if value == AUTO else value)))
         self._add_knowledge()
-        self._tool = self._gui.add_dropdown("A drag draws", tuple(TOOLS), hint="Shift + drag: the axis")
-        self._tool.on_update(self._choosing(TOOLS.get))
-        self._add_buttons("Drawing", HISTORY)
-        self._add_buttons("View", VIEW)
         self._add_keys()
         panel = self._gui.add_panel()
-        self.decision, self.sections, self.stages, tool, self.picture, why, draw, keys = map(panel.add_tab, TABS)
+        self.decision, self.sections, self.stages, tool, self.picture, *others = map(panel.add_tab, TABS)
+        why, self.history, draw, settings, self.help = others
         with draw:
             self._add_controls()
         with tool:
@@ -89,26 +96,35 @@ class Panels:
         with why:
             self._why = self._gui.add_html("")
             with self._gui.add_folder("Where does this number come from?", expand_by_default=False):
-                self._origins = self._gui.add_html(origins_html())
-        with keys:
-            about = "".join(f"<p>{escape(line)}</p>" for line in (name, *notes))
-            self._gui.add_html(static_text("help.html") + f'<div class="rr-help"><h4>Scene</h4>{about}</div>')
+                self._origins = self._gui.add_html("")
+        with settings:
+            self._settings = SettingsPanel(self._gui, self._choosing)
+        with self.help:
+            self._help = self._gui.add_html(_help_html(held))
         panel.dock_below(self._gui.main_panel)
 
     def show(self, session: Session) -> None:
         """Bring texts and controls up to date, sending only what has changed."""
-        nobody = session.decision.control.holder is None
-        _set(self._hint, "content", NOBODY_HTML if nobody else hint_html(session))
-        _set(self._result, "content", result_html(session))
-        _set(self._kind, "value", session.shown.kind or AUTO)
-        _set(self._direction, "value", DIRECTION_NAMES[session.shown.direction])
-        _set(self._diameter, "value", session.shown.diameter_mm)
-        known = knowledge_text(session.shown)
-        _set(self._known, "label", f"{KNOWN}: {known}" if known else KNOWN)
-        _set(self._tool, "value", session.tool.capitalize())
+        self._unit = session.unit
+        set_to(self._newer, "content", newer_html(session))
+        set_to(self._result, "content", in_session_unit(result_html(session), session))
+        set_to(self._kind, "value", session.shown.kind or AUTO)
+        set_to(self._direction, "value", DIRECTION_NAMES[session.shown.direction])
+        show_unit(self._diameter, self._unit, DIAMETER, DIAMETER_STEP_MM)
+        low_mm, high_mm = session.shown.diameter_mm
+        set_to(self._diameter, "value", (from_mm(low_mm, self._unit), from_mm(high_mm, self._unit)))
+        known = in_unit(knowledge_text(session.shown), self._unit)
+        set_to(self._known, "label", f"{KNOWN}: {known}" if known else KNOWN)
+        set_to(self._tool, "value", session.tool.capitalize())
         if session.preview is None:
-            _set(self._why, "content", why_html(session))
+            set_to(self._why, "content", in_session_unit(why_html(session), session))
+            set_to(self._origins, "content", in_unit(origins_html(), self._unit))
             self._tools.show(session)
+        self._settings.show(session)
+
+    def hold(self, held: Held) -> None:
+        """Say of another frame which one it is."""
+        self._help.content = _help_html(held)
 
     def _add_knowledge(self) -> None:
         """Folded away: what is in force stands in its label."""
@@ -116,14 +132,19 @@ class Panels:
         with self._known:
             self._direction = self._gui.add_dropdown("Axis lies", tuple(DIRECTIONS))
             self._diameter = self._gui.add_vector2(
-                "Diameter from / to, mm",
+                DIAMETER.format("mm"),
                 UNKNOWN_MM,
                 min=UNKNOWN_MM,
-                step=0.1,
+                step=DIAMETER_STEP_MM,
                 hint="0: not known; the same twice: held",
             )
         self._direction.on_update(self._choosing(DIRECTIONS.get))
-        self._diameter.on_update(self._choosing(lambda typed: DiameterTyped(*map(float, typed))))
+        self._diameter.on_update(
+            self._choosing(lambda typed: DiameterTyped(*(to_mm(float(one), self._unit) for one in typed)))
+        )
+
+    def _diameter_typed(self, typed: tuple[float, float]) -> DiameterTyped:
+        return DiameterTyped(to_mm(float(typed[0]), self._unit), to_mm(float(typed[1]), self._unit))
 
     def _add_controls(self) -> None:
         for label, events in (("Polygon", POLYGON), ("Zoom", ZOOM), ("Section", SECTION)):
@@ -150,7 +171,7 @@ class Panels:
         return chosen
 
 
-def _set(handle: Any, name: str, value: Any) -> None:
-    """Send an attribute only when it is another one."""
-    if getattr(handle, name) != value:
-        setattr(handle, name, value)
+def _help_html(held: Held) -> str:
+    """All keys, and which scene it is."""
+    about = "".join(f"<p>{escape(line)}</p>" for line in (held.name, *held.notes))
+    return static_text("help.html") + f'<div class="rr-help"><h4>Scene</h4>{about}</div>'

@@ -1,10 +1,11 @@
 """The pictures a page shows, composed of the frame, its depth and a reconstruction by the library's overlays."""
 
-from functools import cached_property
+from functools import cached_property, lru_cache
 
 import cv2
 import numpy as np
 
+from app.encoded import Encoded, Layer, as_jpeg, as_layer
 from app.inspection import grasp_in, line_in, residuals_in
 from app.object_drawing import Pixel
 from app.page import LayerName, OverlayName
@@ -25,16 +26,21 @@ from rotrecon.overlay import (
 )
 from rotrecon.reconstruction import Reconstruction
 from rotrecon.residuals import with_residuals
+from rotrecon.tool_table import Tool
 
 STAGES: dict[LayerName, Stage] = {"close pixels": "close", "accepted pixels": "accepted", "segmentation": "object"}
 """The layers that are figure 3 a, b and c of the paper."""
 SECTION_COLOR = (204, 121, 167)
-RULER_COLOR = (240, 228, 66)
-KEPT_COLOR, GONE_COLOR, BACK_COLOR = (60, 147, 208), (213, 94, 0), (0, 158, 115)
+RULER_COLOR = (255, 255, 255)
+KEPT_COLOR, GONE_COLOR, BACK_COLOR = (60, 147, 208), (213, 94, 0), (204, 121, 167)
 """Of a line of pixels: what a step left, took away and brought back."""
 STEP_HEIGHT_PX = 240
 PANEL_WIDTH_PX = 480
 """Width that pictures in a panel are sent with: that of the panel, on a screen of high density a little less."""
+KEPT = 4
+"""Pictures of each sort that are kept as they are sent, as most pages show the same."""
+PICTURE_QUALITY, PANEL_QUALITY, STEP_QUALITY = 85, 80, 90
+"""Of JPEG."""
 CROP_PX = 72
 """Side of the magnified crop in pixels of the frame."""
 
@@ -44,6 +50,9 @@ class Pictures:
 
     def __init__(self, frame: Frame) -> None:
         self.frame = frame
+        keep = lru_cache(maxsize=KEPT)
+        self.sent_picture, self.sent_layer = keep(self._sent_picture), keep(self._sent_layer)
+        self.sent_television, self.sent_step = keep(self._sent_television), keep(self._sent_step)
 
     @cached_property
     def depth_range_m(self) -> tuple[float, float]:
@@ -55,16 +64,49 @@ class Pictures:
         """The depth map in colours, the picture itself where there is no depth."""
         return depth_colors(self.frame.depth_m, self.depth_range_m)
 
+    def with_depth(self, opacity: float) -> Bytes:
+        """The frame with its depth blended in."""
+        if opacity <= 0:
+            return self.frame.image
+        return blend(self.frame.image, self.depth_layer, np.isfinite(self.frame.depth_m), opacity)
+
+    def _sent_picture(self, opacity: float) -> Encoded:
+        """The picture that is drawn on, as it is sent; it stays the same when the drawing changes."""
+        return as_jpeg(self.with_depth(opacity), PICTURE_QUALITY)
+
+    def _sent_layer(
+        self,
+        result: Reconstruction | None,
+        opacity: float,
+        section: int,
+        overlay: OverlayName,
+        ends_px: tuple[Pixel, ...],
+        tool: Tool | None = None,
+    ) -> Layer:
+        """All that is drawn over it, as it is sent."""
+        image = self.camera_view(result, opacity, section, overlay, tool)
+        return as_layer(self.with_ends(image, ends_px) if ends_px else image, self.with_depth(opacity))
+
+    def _sent_television(self, result: Reconstruction | None, layer: LayerName) -> Encoded:
+        return as_jpeg(self.television(result, layer), PANEL_QUALITY)
+
+    def _sent_step(self, result: Reconstruction, section: int, step: int) -> Encoded | None:
+        image = self.step(result, section, step)
+        return None if image is None else as_jpeg(image, STEP_QUALITY)
+
     def camera_view(
-        self, result: Reconstruction | None, opacity: float, section: int, overlay: OverlayName = "nothing"
+        self,
+        result: Reconstruction | None,
+        opacity: float,
+        section: int,
+        overlay: OverlayName = "nothing",
+        tool: Tool | None = None,
     ) -> Bytes:
         """The picture that is drawn on: depth blended in, the solid's outline, a section lit, and what is over it."""
-        image = self.frame.image
-        if opacity > 0:
-            image = blend(image, self.depth_layer, np.isfinite(self.frame.depth_m), opacity)
+        image = self.with_depth(opacity)
         if result is None:
             return image
-        image = _with_overlay(image, result, overlay)
+        image = _with_overlay(image, result, overlay, tool)
         return _with_section(with_outlines(image, outlines(result)), result, section)
 
     def with_ends(self, image: Bytes, ends_px: tuple[Pixel, ...]) -> Bytes:
@@ -128,10 +170,10 @@ def _with_section(image: Bytes, result: Reconstruction, section: int) -> Bytes:
     return lit
 
 
-def _with_overlay(image: Bytes, result: Reconstruction, overlay: OverlayName) -> Bytes:
+def _with_overlay(image: Bytes, result: Reconstruction, overlay: OverlayName, tool: Tool | None) -> Bytes:
     """The picture with the tool at its place, or with the residuals in colours."""
     if overlay == "tool":
-        grasp = grasp_in(result)
+        grasp = grasp_in(result, tool)
         return image if grasp is None else with_grasp(image, grasp, result.frame)
     residuals = residuals_in(result) if overlay == "residuals" else None
     return image if residuals is None else with_residuals(image, residuals)

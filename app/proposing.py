@@ -7,6 +7,7 @@ from app.deciding.events import Offered, Unmeasured
 from app.deciding.states import Offer
 from app.record.evidence import proposal
 from app.session import Session
+from app.tool_text import tools_in_the_way
 from rotrecon.drawing import Drawing
 from rotrecon.reconstruction import Reconstruction
 from rotrecon.settings import Settings
@@ -15,11 +16,12 @@ from rotrecon.tools import ToolProposal
 
 @dataclass(frozen=True)
 class Evidence:
-    """What a proposal is about, beside the frame and the settings."""
+    """What a proposal is about, beside the frame."""
 
     revision: int
     drawing: Drawing
     """The operator's, which has no axis where that was proposed."""
+    settings: Settings
     result: Reconstruction
 
 
@@ -28,15 +30,17 @@ def evidence_shown(session: Session) -> Evidence | None:
     drawing, result = session.shown.complete, session.reconstruction
     if drawing is None or result is None or session.preview is not None or not session.up_to_date:
         return None
-    return Evidence(session.revision, replace(drawing, axis=None) if session.shown.proposed else drawing, result)
+    drawing = replace(drawing, axis=None) if session.shown.proposed else drawing
+    return Evidence(session.revision, drawing, session.settings, result)
 
 
-def offered(evidence: Evidence, who: str, settings: Settings) -> Offered | Unmeasured:
+def offered(evidence: Evidence, who: str) -> Offered | Unmeasured:
     """The event that tells the decision of a measurement."""
-    result = evidence.result
+    result, settings = evidence.result, evidence.settings
     entry = proposal(who, result.frame, evidence.drawing, settings, result)
     if result.solid is None or entry.digest is None:
         return Unmeasured(seconds(), entry)
+    in_the_way = tools_in_the_way(result)
     offer = Offer(
         revision=evidence.revision,
         digest=entry.digest,
@@ -44,5 +48,9 @@ def offered(evidence: Evidence, who: str, settings: Settings) -> Offered | Unmea
         tool=result.tool.tool.name if isinstance(result.tool, ToolProposal) else None,
         tools=tuple(tool.name for tool in settings.tools),
         for_dangerous=frozenset(tool.name for tool in settings.tools if tool.dangerous_ok),
+        in_the_way=in_the_way,
     )
+    if in_the_way:
+        said = " ".join(f"{tool}: {' '.join(lines)}" for tool, lines in in_the_way.items())
+        entry = replace(entry, payload={**entry.payload, "in_the_way": said})
     return Offered(seconds(), offer, entry)

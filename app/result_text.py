@@ -6,6 +6,7 @@ from typing import Any
 
 from app.answers import answer_of
 from app.hints import hint, warning
+from app.origins import field_named, from_
 from app.session import Session, sentence
 from app.wording import candidate_row, certainty, from_to, measured, open_ends, rests_on
 from rotrecon.outcome import Fit
@@ -22,13 +23,20 @@ REASONS = {
     "odd_radius": "odd radius",
 }
 """Why a section was dropped, as a person says it."""
-FIELD = '<div class="rr-field"><span>{name}</span><b data-field="{key}" data-value="{exact}">{text}</b></div>'
+FIELD = '<div class="rr-field" {origin}><span>{name}</span><b data-field="{key}" data-value="{exact}">{text}</b></div>'
 
 
-def hint_html(session: Session) -> str:
-    """What to do next; amber when something is wrong with what is shown."""
-    style = "rr-hint" if warning(session) is None else "rr-hint rr-amber"
-    return f'<div class="{style}" data-testid="hint">{escape(hint(session))}</div>'
+def hint_html(session: Session, led: str | None = None, progress: str = "") -> str:
+    """What to do next; amber when something is wrong with what is shown.
+
+    `led` is what a tour says, and follows a warning about a result that is there all the same; `progress` is its HTML.
+    """
+    warned = warning(session)
+    text = hint(session, led)
+    if led is not None and warned is not None and session.reconstruction and session.reconstruction.solid:
+        text = f"{warned} {led}"
+    style = "rr-hint" if warned is None else "rr-hint rr-amber"
+    return f'<div class="{style}" data-testid="hint" {from_("reasons")}>{escape(text)}</div>{progress}'
 
 
 def result_html(session: Session) -> str:
@@ -47,7 +55,8 @@ def result_html(session: Session) -> str:
     concave = ", seen from inside" if content["concave"] else ""
     return (
         f'<div class="rr-result{dim}" data-testid="result" data-revision="{revision}">'
-        f'<div class="rr-head"><div class="rr-big" data-field="diameter_mm" data-value="{content["diameter_mm"]}">'
+        f'<div class="rr-head"><div class="rr-big" data-field="diameter_mm" data-value="{content["diameter_mm"]}" '
+        f"{from_('diameter_mm', 'interval_mm')}>"
         f"&oslash; {measured(content['diameter_mm'], content['interval_mm'], ' mm')}</div>"
         f'<div class="rr-kind" data-field="kind" data-value="{content["kind"]}">'
         f"{in_words(content['kind'])}{concave}</div></div>"
@@ -60,12 +69,13 @@ def _certainty(content: dict[str, Any]) -> str:
     """The interval by its ends, and whether the kind is certain: amber where it is not."""
     text, interval = escape(certainty(content)), content["interval_mm"]
     if interval is None:
-        return f'<div class="rr-small" data-field="certain" data-value="false">{text}</div>'
+        return f'<div {from_("certain")} class="rr-small" data-field="certain" data-value="false">{text}</div>'
     style = "rr-sure" if content["certain"] else "rr-unsure"
     return (
-        f'<div class="rr-doubt"><span data-field="interval_mm" data-value="{interval}">'
+        f'<div class="rr-doubt"><span data-field="interval_mm" data-value="{interval}" {from_("interval_mm")}>'
         f"{from_to(interval, ' mm')} (95 %)</span>"
-        f'<span class="{style}" data-field="certain" data-value="{str(content["certain"]).lower()}">{text}</span></div>'
+        f'<span {from_("certain")} class="{style}" data-field="certain" '
+        f'data-value="{str(content["certain"]).lower()}">{text}</span></div>'
     )
 
 
@@ -77,14 +87,16 @@ def _tool(session: Session, result: Reconstruction, content: dict[str, Any]) -> 
     unsure = "not sure, " if isinstance(result.tool, NoTool) and result.tool.unsure else ""
     doubt = "doubtful, " if _doubts(result) else unsure
     text = f"<b>{escape(tool)}</b>" if tool else f"<b>No tool</b> &ndash; {doubt}see &ldquo;Why&rdquo;"
-    return f'<div class="rr-tool" data-field="tool" data-value="{escape(tool or "")}">Tool: {text}</div>'
+    exact = escape(tool or "")
+    return f'<div class="rr-tool" data-field="tool" data-value="{exact}" {from_("tool")}>Tool: {text}</div>'
 
 
 def why_html(session: Session) -> str:
     """What the result rests on: candidates, noise, dropped sections, every tool, and the paper's two cuts."""
     result = session.reconstruction
     if result is None:
-        return f'<div class="rr-why rr-dim">{escape(warning(session) or "Draw an area and an axis first.")}</div>'
+        text = escape(warning(session) or "Draw an area and an axis first.")
+        return f'<div class="rr-why rr-dim" {from_("reasons")}>{text}</div>'
     content = answer_of(result)
     doubts = _doubts(result)
     blocks = [("Why not", _list(content["reasons"]))] if content["kind"] is None else []
@@ -94,7 +106,7 @@ def why_html(session: Session) -> str:
         blocks += _evidence(result, content)
     dropped = content["sections"]["dropped"].items()
     rows = [("used", str(content["sections"]["used"]))] + [(REASONS.get(str(k), str(k)), str(n)) for k, n in dropped]
-    blocks.append(("Sections", _table(rows)))
+    blocks.append(("Sections", _table(rows, "sections_used")))
     if content["kind"] is not None and not doubts and (session.proposal_told or content["tool"] is None):
         blocks.append(("Tools", _tools(result, content["reasons"])))
     return '<div class="rr-why" data-testid="why">' + "".join(f"<h4>{n}</h4>{body}" for n, body in blocks) + "</div>"
@@ -102,11 +114,11 @@ def why_html(session: Session) -> str:
 
 def _evidence(result: Reconstruction, content: dict[str, Any]) -> list[tuple[str, str]]:
     """What the diameter rests on: the paper's other cut, the kinds considered, and how well it is known."""
-    margin = "" if content["margin"] is None else f" (margin {content['margin']:.2g})"
-    candidates = _table([candidate_row(candidate) for candidate in content["candidates"]])
+    margin = "" if content["margin"] is None else f" <span {from_('margin')}>(margin {content['margin']:.2g})</span>"
+    candidates = _table([candidate_row(one) for one in content["candidates"]], "kind", "diameter_mm", "score", "margin")
     blocks = [*_by_cut(result, content["diameter_mm"]), (f"Candidates, by score{margin}", candidates)]
-    known = rests_on(content)
-    return [*blocks, ("How well it is known", _table(known))] if known else blocks
+    known = "".join(_table([row], field_named(row[0])) for row in rests_on(content))
+    return [*blocks, ("How well it is known", known)] if known else blocks
 
 
 def _by_cut(result: Reconstruction, diameter_mm: float) -> list[tuple[str, str]]:
@@ -114,7 +126,7 @@ def _by_cut(result: Reconstruction, diameter_mm: float) -> list[tuple[str, str]]
     if result.first_cut_radius_m is None:
         return []
     cuts = {"Across the drawn axis": 2000 * result.first_cut_radius_m, "Across the axis in space": diameter_mm}
-    return [("Diameter by the cut", _table([(name, f"{value:.1f} mm") for name, value in cuts.items()]))]
+    return [("Diameter by the cut", _table([(name, f"{value:.1f} mm") for name, value in cuts.items()], "by_cut"))]
 
 
 def _doubts(result: Reconstruction) -> tuple[str, ...]:
@@ -133,14 +145,21 @@ def _fields(content: dict[str, Any]) -> str:
     ]
     cells = [
         FIELD.format(
-            name=name, key=key, exact=content[key], text=before + measured(content[key], interval, unit, decimals)
+            name=name,
+            key=key,
+            exact=content[key],
+            text=before + measured(content[key], interval, unit, decimals),
+            origin=from_(key),
         )
         for name, key, before, interval, unit, decimals in fields
         if content[key] is not None
     ]
     sections = f"{content['sections']['used']} of {content['sections']['used'] + dropped}"
     exact = content["sections"]["used"]
-    return "".join(cells) + FIELD.format(name="Sections", key="sections_used", exact=exact, text=sections)
+    origin = from_("sections_used")
+    return "".join(cells) + FIELD.format(
+        name="Sections", key="sections_used", exact=exact, text=sections, origin=origin
+    )
 
 
 def _tools(result: Reconstruction, reasons: list[str]) -> str:
@@ -156,9 +175,10 @@ def _name(tool: Tool) -> str:
 
 
 def _list(items: list[str]) -> str:
-    return "<ul>" + "".join(f"<li>{escape(item)}</li>" for item in items) + "</ul>"
+    return f"<ul {from_('reasons')}>" + "".join(f"<li>{escape(item)}</li>" for item in items) + "</ul>"
 
 
-def _table(rows: Sequence[tuple[str, ...]]) -> str:
+def _table(rows: Sequence[tuple[str, ...]], *fields: str) -> str:
+    """Rows of numbers that come from these fields."""
     cells = ("".join(f"<td>{escape(cell)}</td>" for cell in row) for row in rows)
-    return "<table>" + "".join(f"<tr>{row}</tr>" for row in cells) + "</table>"
+    return f"<table {from_(*fields)}>" + "".join(f"<tr>{row}</tr>" for row in cells) + "</table>"

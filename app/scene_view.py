@@ -2,7 +2,7 @@
 
 import numpy as np
 from numpy.typing import NDArray
-from viser import ClientHandle, SceneNodePointerEvent, ViserServer
+from viser import ClientHandle, LineSegmentsHandle, SceneNodePointerEvent, ViserServer
 from viser import transforms as tf
 
 from app.envelope_view import EnvelopeView
@@ -16,6 +16,8 @@ from rotrecon.frame import Frame
 from rotrecon.mesh import as_mesh
 from rotrecon.primitives import Primitive
 from rotrecon.reconstruction import Reconstruction
+from rotrecon.residuals import Residuals
+from rotrecon.tool_table import Tool
 from rotrecon.tools import NoTool, ToolProposal
 
 OBJECT_COLOR, SOLID_COLOR, AXIS_COLOR, TOOL_COLOR = (220, 40, 40), (86, 180, 233), (0, 200, 255), (240, 228, 66)
@@ -29,19 +31,31 @@ class SceneView:
     """Nodes under `/world`, named the same for as long as the program runs."""
 
     def __init__(self, server: ViserServer, frame: Frame, picture: Bytes, cloud_points: int, post: Post) -> None:
-        self._scene, self._frame, self._post = server.scene, frame, post
+        self._scene, self._post, self._cloud_points = server.scene, post, cloud_points
         self._shown: Reconstruction | None = None
+        self._tool: Tool | None = None
+        self._limits: list[LineSegmentsHandle] = []
+        self._scene.add_frame("/world", show_axes=False)
+        self._envelope = EnvelopeView(self._scene)
+        self.hold(frame, picture)
+
+    def hold(self, frame: Frame, picture: Bytes) -> None:
+        """Show a frame, in the place of the one before it: its cloud, camera and limits."""
+        self._frame = frame
         self._valid = np.isfinite(frame.depth_m).ravel()
         self._depth_m = float(np.median(frame.depth_m.ravel()[self._valid])) if self._valid.any() else 1.0
-        self._scene.add_frame("/world", show_axes=False)
-        self._add_cloud(cloud_points)
+        self._add_cloud()
         self._add_camera(picture)
         size_m = 0.1 * self._depth_m
         self._scene.add_frame("/world/base", axes_length=size_m, axes_radius=size_m / 25)
-        for limit, lines in limit_lines(frame.workspace, frame.camera, frame.T_base_camera).items():
+        for limit in self._limits:
+            limit.remove()
+        self._limits = [
             self._scene.add_line_segments(
                 f"/world/limits/{limit}", lines, LIMITS_COLOR, thickness=1.5, thickness_units="screen"
             )
+            for limit, lines in limit_lines(frame.workspace, frame.camera, frame.T_base_camera).items()
+        ]
         self._object = self._scene.add_point_cloud(
             "/world/object",
             np.zeros((1, 3)),
@@ -51,11 +65,16 @@ class SceneView:
             point_shading="flat",
             visible=False,
         )
+        self._envelope.hold(frame, self._point_size_m())
 
-        self._envelope = EnvelopeView(self._scene, self._frame, self._point_size_m())
+    def show(self, result: Reconstruction | None, tool: Tool | None = None) -> None:
+        """Show what was segmented, and the solid with its axis, contact point and approach, if there is one.
 
-    def show(self, result: Reconstruction | None) -> None:
-        """Show what was segmented, and the solid with its axis, contact point and approach, if there is one."""
+        A `tool` stands at its place, else the one that is proposed or may fit.
+        """
+        if self._tool != tool or self._shown is not result:
+            self._tool = tool
+            self._envelope.show(result, tool)
         if result is self._shown:
             return
         self._shown = result
@@ -67,7 +86,6 @@ class SceneView:
         solid = None if result is None else result.solid
         self._show_solid(solid)
         self._show_tool(None if result is None else result.tool, solid)
-        self._envelope.show(result)
 
     def light_section(self, client: ClientHandle, result: Reconstruction | None, section: int) -> None:
         """Light one section on one page."""
@@ -83,11 +101,31 @@ class SceneView:
             visible=sections is not None,
         )
 
-    def hide_section(self, client: ClientHandle) -> None:
-        """Take the lit section away, as it would hide the picture in the camera view."""
-        node = client.scene.get_handle_by_name("/section")
-        if node is not None:
-            node.visible = False
+    def color_residuals(self, client: ClientHandle, residuals: Residuals | None) -> None:
+        """Show on one page how far the object's points lie off the solid, in place of those that all pages see."""
+        hidden = client.scene.get_handle_by_name("/world/object")
+        if residuals is not None and hidden is None:
+            client.scene.add_frame("/world/object", show_axes=False, visible=False)
+        elif residuals is None and hidden is not None:
+            hidden.remove()
+        chosen = slice(0) if residuals is None else slice(None, None, -(-len(residuals.pixel) // OBJECT_POINTS))
+        points_m = np.zeros((1, 3)) if residuals is None else self._in_base(residuals.pixel[chosen])
+        client.scene.add_point_cloud(
+            "/residuals",
+            points_m,
+            OBJECT_COLOR if residuals is None else residuals.colors[chosen],
+            point_size=1.5 * self._point_size_m() / self._stride,
+            precision="float32",
+            point_shading="flat",
+            visible=residuals is not None,
+        )
+
+    def hide_own(self, client: ClientHandle) -> None:
+        """Take away what one page has of its own, as it would hide the picture in the camera view."""
+        for name in ("/section", "/residuals"):
+            node = client.scene.get_handle_by_name(name)
+            if node is not None:
+                node.visible = False
 
     def look(self, client: ClientHandle, pose: tuple[Floats, ...] | None) -> None:
         """Stand where the page stood last (up, position, look-at), or beside the sensor and above it."""
@@ -119,9 +157,9 @@ class SceneView:
         """Points as large as they are apart."""
         return 1.5 * self._depth_m / self._frame.camera.focal_px * self._stride
 
-    def _add_cloud(self, cloud_points: int) -> None:
-        """Every n-th point of the cloud both ways, so that about `cloud_points` are sent."""
-        self._stride = max(1, round(float(np.sqrt(self._valid.sum() / max(cloud_points, 1)))))
+    def _add_cloud(self) -> None:
+        """Every n-th point of the cloud both ways, so that about as many are sent as were asked for."""
+        self._stride = max(1, round(float(np.sqrt(self._valid.sum() / max(self._cloud_points, 1)))))
         number = np.arange(self._valid.size).reshape(self._frame.depth_m.shape)[:: self._stride, :: self._stride]
         chosen = number[self._valid.reshape(self._frame.depth_m.shape)[:: self._stride, :: self._stride]]
         self._scene.add_point_cloud(

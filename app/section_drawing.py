@@ -1,5 +1,7 @@
 """One section in words, and drawn in its own plane."""
 
+from functools import lru_cache
+
 import numpy as np
 
 from app.charts import LIT, ODD, PROFILE, USED, section_count
@@ -56,6 +58,7 @@ def line_text(result: Reconstruction | None, section: int) -> str:
     return f"On its line of pixels: {steps}; mean depth {mean_mm:.1f} mm, sigma {sigma_mm:.1f} mm."
 
 
+@lru_cache(maxsize=4)
 def section_svg(result: Reconstruction | None, section: int) -> str:
     """One section in its own plane: its points, its circle, and how far they lie off it; the paper's S, C and F."""
     if result is None or result.sections is None or result.second_cut is None or section >= section_count(result):

@@ -9,6 +9,7 @@ from app.deciding.settings import DecisionSettings
 from app.door.door import Door
 from app.door.hidden_viser import HiddenViser
 from app.door.listening import Certificate, listen
+from app.last_session import LastSessions
 from app.record.store import Record
 from app.robot.api import robot_routes
 from app.robot.cell import ConsoleCell
@@ -30,13 +31,14 @@ def serve(
     certificate: Certificate | None = None,
     capture: Capture | None = None,
     notes: tuple[str, ...] = (),
+    tour: bool = False,
     announce: Callable[[str], None] = print,
 ) -> None:
     """Serve the console until interrupted; says where it is to be found, and how to get in.
 
-    Without a `record` nothing can be decided. Raises HostError, before anything is opened, for an address that cannot
-    be listened on, is taken, or that others can reach while users or TLS are missing; PeopleError for a file of users
-    that cannot be used.
+    Without a `record` nothing can be decided; a `tour` leads whoever opens a page. Raises HostError, before anything is
+    opened, for an address that cannot be listened on, is taken, or that others can reach while users or TLS are
+    missing; PeopleError for a file of users that cannot be used.
     """
     socket = listen(host, port, people, certificate)
     hidden = HiddenViser()
@@ -50,12 +52,14 @@ def serve(
         deciding=deciding,
         name_of=hidden.name_of,
         capture=capture,
+        last=None if record is None else LastSessions(record.folder),
+        tour=tour,
     )
     console.start()
     door = Door(hidden, people, socket, host, certificate, camera_commands=console.panels.camera_commands)
     try:
         door.start(robot_routes(ConsoleCell(console), door.gate, door.guard))
-        for line in (*notes, *announcements(door)):
+        for line in (*console.held.notes, *announcements(door)):
             announce(line)
         ThreadEvent().wait()
     except KeyboardInterrupt:

@@ -7,13 +7,16 @@ from app.deciding.events import DecisionEvent, Voided
 from app.deciding.noting import refused
 from app.deciding.step import decide
 from app.drawing_steps import drawn_on
-from app.events import Event, PageLeft, Refused
+from app.events import DrawingEvent, Event, PageLeft, Refused, SettingTyped, UnitChosen
+from app.newer_steps import NewerEvent, with_newer
 from app.object_drawing import with_axis
+from app.reopening import Reopening, with_reopened
 from app.session_state import Measured as Measured
 from app.session_state import Notice as Notice
 from app.session_state import Session as Session
 from app.session_state import sentence as sentence
 from app.session_state import with_selected
+from app.setting_steps import set_to
 from rotrecon.outcome import FitFailure
 from rotrecon.reconstruction import Reconstruction
 
@@ -26,7 +29,7 @@ class Done:
     event: Event
 
 
-def step(session: Session, event: Event | DecisionEvent | Done) -> Session:
+def step(session: Session, event: Event | DecisionEvent | NewerEvent | Reopening | Done) -> Session:
     """The session after an event; an event that makes no sense leaves it as it is."""
     if isinstance(event, Done):
         why = no_control(session.decision, event.page)
@@ -35,10 +38,16 @@ def step(session: Session, event: Event | DecisionEvent | Done) -> Session:
         event = event.event
     if isinstance(event, DecisionEvent):
         return _decided(session, event)
+    if isinstance(event, NewerEvent):
+        return with_newer(session, event)
+    if isinstance(event, Reopening):
+        return with_reopened(session, event)
+    if isinstance(event, SettingTyped | UnitChosen):
+        return _bound(session, set_to(session, event))
     return _bound(session, _drawn(session, event))
 
 
-def _drawn(session: Session, event: Event) -> Session:
+def _drawn(session: Session, event: DrawingEvent) -> Session:
     after = drawn_on(session, event)
     if after.shown != session.shown:
         after = replace(after, revision=session.revision + 1, notice=None)
@@ -50,10 +59,14 @@ def _drawn(session: Session, event: Event) -> Session:
 
 
 def _decided(session: Session, event: DecisionEvent) -> Session:
-    """The session after something about the decision; a drag of a page that is no longer in control has no end."""
+    """The session after something about the decision.
+
+    What a page that is no longer in control has begun has no end: a drag, and the taking of a newer frame.
+    """
     after = replace(session, decision=decide(session.decision, event))
     if after.decision.control.holder == session.decision.control.holder:
         return after
+    after = replace(after, taking=None)
     return _bound(after, _drawn(after, PageLeft()))
 
 
@@ -62,8 +75,8 @@ def _bound(before: Session, after: Session) -> Session:
     case = after.decision.case
     if case is None or (after.revision == case.offer.revision and after.measured is before.measured):
         return after
-    voided = decide(after.decision, Voided(after.decision.now, "the drawing was changed"))
-    return replace(after, decision=voided)
+    what = "the drawing was changed" if after.settings is before.settings else "a setting was changed"
+    return replace(after, decision=decide(after.decision, Voided(after.decision.now, what)))
 
 
 def _axis_adopted(session: Session) -> Session:

@@ -3,10 +3,16 @@
 from dataclasses import dataclass, field, replace
 from typing import Literal
 
+from app.adjustable import Chosen
 from app.deciding.states import Deciding
+from app.deciding.watchdog import FrameFacts
 from app.events import Refused
+from app.held import Held, Newer, Taking
 from app.object_drawing import ObjectDrawing, Part, Pixel
+from app.units import Unit
 from rotrecon.reconstruction import Reconstruction
+from rotrecon.settings import Settings
+from rotrecon.tool_table import Tool
 
 Objects = tuple[ObjectDrawing, ...]
 VEIL = "a class is marked dangerous: say in the Decision panel what the object is, and the measurement is shown"
@@ -34,6 +40,16 @@ class Notice:
 
 
 @dataclass(frozen=True)
+class Left:
+    """What was there before an entry of the record was opened."""
+
+    held: Held
+    facts: FrameFacts
+    objects: Objects
+    selected: int
+
+
+@dataclass(frozen=True)
 class Session:
     """Everything that all pages share; the picture it is drawn on has `size_px` (width, height)."""
 
@@ -57,6 +73,25 @@ class Session:
     """The failure to measure what is shown, or to close the polygon; gone as soon as that changes."""
     decision: Deciding = field(default_factory=Deciding)
     """What is proposed, who may decide on it, and how far that has got."""
+    settings: Settings = field(default_factory=Settings)
+    """What everything is measured with."""
+    defaults: Chosen = field(default_factory=Chosen)
+    """The settings that the program was started with."""
+    unit: Unit = "mm"
+    """That lengths are shown in."""
+    held: Held | None = None
+    """What is drawn on and measured in."""
+    newer: Newer | None = None
+    """The latest that has come since, and waits to be taken."""
+    taking: Taking | None = None
+    """The one that is being made the held frame."""
+    left: Left | None = None
+    """What an entry of the record was opened instead of, while one is."""
+
+    @property
+    def chosen(self) -> Chosen:
+        """The settings in force."""
+        return Chosen(self.settings, self.decision.settings)
 
     @property
     def shown(self) -> ObjectDrawing:
@@ -86,6 +121,19 @@ class Session:
     def proposal_told(self) -> bool:
         """Whether the tool that fits may be named: its proposal is on disk."""
         return self.decision.case is not None and self.decision.fault is None
+
+    @property
+    def entry(self) -> int | None:
+        """Of the record, whose frame is held; None for one that was opened or taken."""
+        return None if self.held is None else self.held.entry
+
+    @property
+    def overriding(self) -> Tool | None:
+        """The tool that the operator has chosen against the program's answer."""
+        case, result = self.decision.case, self.reconstruction
+        if case is None or case.override is None or result is None:
+            return None
+        return next((tool for tool in result.settings.tools if tool.name == case.tool), None)
 
     @property
     def visible(self) -> "Session":

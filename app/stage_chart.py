@@ -1,5 +1,6 @@
 """The chart of one line of pixels at one step of the segmentation: pixel against depth."""
 
+from functools import lru_cache
 from typing import Any
 
 import numpy as np
@@ -28,6 +29,7 @@ NO_STAGE: tuple[Floats, ...] = tuple(
 )
 
 
+@lru_cache(maxsize=4)
 def stage_chart(line: Line | None, step: int) -> tuple[Floats, ...]:
     """Columns of the chart: place, px, and depths, mm, NaN where a pixel is not of the series."""
     if line is None or len(line.place_px) < 2:

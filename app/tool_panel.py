@@ -1,15 +1,18 @@
 """The tab of the tools: their clearances, the one that is shown at its place, and where the camera should go next."""
 
-from collections.abc import Callable
 from math import degrees
-from typing import Any
 
 from viser import GuiApi
 
 from app.events import ContactPlaced
 from app.session import Session
+from app.showing import Choosing, in_session_unit, set_to, show_unit
 from app.tool_text import NOTHING, next_view_html, place_html, tools_html
+from app.units import INCH_DECIMALS, Unit, from_mm, to_mm
+from rotrecon.contact import limits_of
+from rotrecon.reconstruction import Reconstruction
 
+ALONG = "Contact along the axis, {}"
 ANGLE_STEP_DEG, ALONG_STEP_MM = 5, 5
 MOST_ANGLE_DEG = 90
 
@@ -17,9 +20,9 @@ MOST_ANGLE_DEG = 90
 class ToolPanel:
     """Controls and texts that all pages share."""
 
-    def __init__(self, gui: GuiApi, choosing: Callable[[Callable[[Any], ContactPlaced]], Any]) -> None:
-        """`choosing` makes a callback that posts the event that a value stands for."""
+    def __init__(self, gui: GuiApi, choosing: Choosing) -> None:
         self._placed = (0.0, 0.0)
+        self._unit: Unit = "mm"
         self._tools = gui.add_html(NOTHING)
         self._angle = gui.add_number(
             "Approach turned by, °",
@@ -29,24 +32,36 @@ class ToolPanel:
             step=ANGLE_STEP_DEG,
             hint="About the axis, from the camera's side",
         )
-        self._along = gui.add_number(
-            "Contact along the axis, mm", 0.0, step=ALONG_STEP_MM, hint="From the middle of the object"
-        )
+        self._along = gui.add_number(ALONG.format("mm"), 0.0, step=ALONG_STEP_MM, hint="From the middle of the object")
         self._place = gui.add_html("")
         with gui.add_folder("Where should the camera go?", expand_by_default=False):
             self._next = gui.add_html("")
         self._angle.on_update(choosing(lambda value: ContactPlaced(float(value), self._placed[1])))
-        self._along.on_update(choosing(lambda value: ContactPlaced(self._placed[0], float(value))))
+        self._along.on_update(choosing(lambda value: ContactPlaced(self._placed[0], to_mm(float(value), self._unit))))
 
     def show(self, session: Session) -> None:
         """Bring it up to date, sending only what has changed."""
         contact, result = session.shown.contact, session.reconstruction
-        self._placed = (degrees(contact.angle_rad), 1000 * contact.along_m)
-        texts = ((self._tools, tools_html), (self._place, place_html), (self._next, next_view_html))
-        for handle, value in zip((self._angle, self._along), self._placed, strict=True):
+        self._placed, self._unit = (degrees(contact.angle_rad), 1000 * contact.along_m), session.unit
+        show_unit(self._along, session.unit, ALONG, ALONG_STEP_MM)
+        for name, limit_mm in zip(("min", "max"), limits_mm(result), strict=True):
+            set_to(self._along, name, None if limit_mm is None else from_mm(limit_mm, session.unit))
+        shown = (self._placed[0], from_mm(self._placed[1], session.unit))
+        for handle, value in zip((self._angle, self._along), shown, strict=True):
             if abs(handle.value - value) > 1e-6:
-                handle.value = round(value, 3)
-        for handle, text in texts:
-            content = text(result)
-            if handle.content != content:
-                handle.content = content
+                handle.value = round(value, 3 if session.unit == "mm" else INCH_DECIMALS)
+        texts = (
+            (self._tools, tools_html(result)),
+            (self._place, place_html(result, session.overriding)),
+            (self._next, next_view_html(result)),
+        )
+        for handle, content in texts:
+            set_to(handle, "content", in_session_unit(content, session))
+
+
+def limits_mm(result: Reconstruction | None) -> tuple[float | None, float | None]:
+    """How far along the axis a contact may be, to either side of the middle; no limits before it is measured."""
+    if result is None or result.solid is None:
+        return None, None
+    most_mm = 1000 * limits_of(result.solid).along_m
+    return -most_mm, most_mm

@@ -4,6 +4,7 @@ from html import escape
 from math import degrees
 
 from app.inspection import clearances_in, grasp_in, next_view_in
+from app.origins import from_
 from app.wording import from_to
 from rotrecon.clearance import Clearance
 from rotrecon.contact import PROPOSED, Place
@@ -11,6 +12,7 @@ from rotrecon.grasp import Grasp, Hits
 from rotrecon.next_view import NextView, ViewFrom
 from rotrecon.outcome import Fit
 from rotrecon.reconstruction import Reconstruction
+from rotrecon.tool_table import Tool
 from rotrecon.tools import ToolProposal
 
 STYLES = {"fits": "rr-sure", "not sure": "rr-unsure", "ruled out": "rr-out"}
@@ -31,11 +33,13 @@ def tools_html(result: Reconstruction | None) -> str:
 
 def _tool(one: Clearance, result: Reconstruction) -> str:
     name, verdict = escape(one.tool.name), one.verdict
-    reason = "" if not one.why else f'<div class="rr-small">{escape(one.why)}</div>'
+    reason = "" if not one.why else f'<div class="rr-small" {from_("reasons")}>{escape(one.why)}</div>'
     view = next_view_in(result) if verdict == "not sure" else None
     if view is not None:
-        reason += f'<div class="rr-small" data-testid="settles">{escape(next_view_text(view))}</div>'
-    room = "" if verdict == "ruled out" else f'<div class="rr-small" data-field="clearance">{clearance_text(one)}</div>'
+        settles = escape(next_view_text(view))
+        reason += f'<div {from_("next_view")} class="rr-small" data-testid="settles">{settles}</div>'
+    free = f'<div class="rr-small" data-field="clearance" {from_("clearance")}>{clearance_text(one)}</div>'
+    room = "" if verdict == "ruled out" else free
     return (
         f'<div class="rr-tool" data-tool="{name}" data-verdict="{verdict}"><div class="rr-head"><b>{name}</b>'
         f'<span class="{STYLES[verdict]}">{verdict}</span></div>{room}{reason}</div>'
@@ -59,17 +63,19 @@ def _margin(value_mm: float) -> str:
     return f"{value_mm:.1f} mm"
 
 
-def place_html(result: Reconstruction | None) -> str:
-    """The tool that is shown at its place: what it would hit, and whether the arm gets there."""
-    grasp = None if result is None else grasp_in(result)
+def place_html(result: Reconstruction | None, tool: Tool | None = None) -> str:
+    """A tool at its place: what it would hit, and whether the arm gets there; by default the one that is proposed."""
+    grasp = None if result is None else grasp_in(result, tool)
     if result is None or grasp is None:
         return '<div class="rr-why" data-testid="place"></div>'
-    unproposed = "" if isinstance(result.tool, ToolProposal) else ", which is not proposed,"
+    is_proposed = isinstance(result.tool, ToolProposal) and result.tool.tool == grasp.tool
+    unproposed = "" if is_proposed else ", which is not proposed,"
     checks = [*hit_lines(grasp), *reach_lines(grasp)]
     rows = "".join(f'<li class="{"rr-good" if good else "rr-bad"}">{escape(text)}</li>' for good, text in checks)
     return (
         f'<div class="rr-why" data-testid="place" data-clear="{str(all(good for good, _ in checks)).lower()}">'
-        f"<h4>{escape(grasp.tool.name)}{unproposed} {place_text(grasp.place)}</h4><ul>{rows}</ul></div>"
+        f"<h4 {from_('place')}>{escape(grasp.tool.name)}{unproposed} {place_text(grasp.place)}</h4>"
+        f"<ul {from_('hits', 'reach')}>{rows}</ul></div>"
     )
 
 
@@ -78,8 +84,20 @@ def trouble(result: Reconstruction) -> str | None:
     grasp = grasp_in(result) if isinstance(result.tool, ToolProposal) else None
     if grasp is None:
         return None
-    bad = [text for good, text in (*reach_lines(grasp), *hit_lines(grasp)) if not good]
-    return f"{bad[0]}; turn the approach or move the contact under \u201cTool\u201d" if bad else None
+    bad = against(grasp)
+    return f"{bad[0][:-1]}; turn the approach or move the contact under \u201cTool\u201d" if bad else None
+
+
+def tools_in_the_way(result: Reconstruction) -> dict[str, tuple[str, ...]]:
+    """Of each tool that cannot be at the place of the contact why: a sentence each."""
+    grasps = (grasp_in(result, tool) for tool in result.settings.tools)
+    found = {grasp.tool.name: against(grasp) for grasp in grasps if grasp is not None}
+    return {name: lines for name, lines in found.items() if lines}
+
+
+def against(grasp: Grasp) -> tuple[str, ...]:
+    """Why a tool cannot be where it is placed: a sentence each."""
+    return tuple(f"{text}." for good, text in (*reach_lines(grasp), *hit_lines(grasp)) if not good)
 
 
 def place_text(place: Place) -> str:
@@ -127,7 +145,8 @@ def next_view_html(result: Reconstruction | None) -> str:
         for going, away_m, off_m in told
     )
     return (
-        f'<div class="rr-why" data-testid="next-view" data-value="{1000 * found.best.half_width_m:.3f}">'
+        f'<div class="rr-why" data-testid="next-view" data-value="{1000 * found.best.half_width_m:.3f}" '
+        f"{from_('next_view')}>"
         f"<p>{escape(next_view_text(found))}</p>"
         f"<p>Camera at {place} m in base coordinates.</p>"
         f'<p class="rr-small">{BEWARE}</p>'

@@ -218,7 +218,8 @@ def _reconstruction(segmented: Reconstruction, found: _Found, radii: SectionRadi
     result = replace(result, solid=in_base, readings=tuple(readings))
     if doubts:
         return replace(result, tool=NoTool(doubts))
-    tool = propose_tool(result.readings, T_base_camera[:3, 3], fit.concave, settings.tools, segmented.drawing.contact)
+    place, camera_m = segmented.drawing.contact, T_base_camera[:3, 3]
+    tool = propose_tool(result.readings, camera_m, fit.concave, settings.tools, place, settings.dangerous)
     return replace(result, tool=tool)
 
 

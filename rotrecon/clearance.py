@@ -5,8 +5,9 @@ from typing import Literal
 
 from rotrecon.arrays import Floats
 from rotrecon.outcome import Range
+from rotrecon.primitives import Kind
 from rotrecon.tool_table import Tool, ToolTable
-from rotrecon.tools import Reading, diameter_mm, judge, widest_mm
+from rotrecon.tools import Judged, Reading, diameter_mm, judge, widest_mm
 
 Verdict = Literal["fits", "not sure", "ruled out"]
 
@@ -30,7 +31,11 @@ class Clearance:
 
 
 def clearances(
-    readings: tuple[Reading, ...], contact_m: Floats, concave: bool, tools: ToolTable
+    readings: tuple[Reading, ...],
+    contact_m: Floats,
+    concave: bool,
+    tools: ToolTable,
+    dangerous: frozenset[Kind] = frozenset(),
 ) -> tuple[Clearance, ...]:
     """Every tool of the table at a contact (3,), in the table's order; raises ValueError without a reading."""
     if not readings:
@@ -39,13 +44,11 @@ def clearances(
     wide = [widest_mm(reading) for reading in readings]
     least, most = min(low for low, _ in thin), max(high for _, high in thin)
     widest = (min(low for low, _ in wide), max(high for _, high in wide))
-    return tuple(_clearance(tool, readings, contact_m, concave, (least, most), widest) for tool in tools)
+    judged = [judge(tool, readings, contact_m, dangerous) for tool in tools]
+    return tuple(_clearance(tool, one, concave, (least, most), widest) for tool, one in zip(tools, judged, strict=True))
 
 
-def _clearance(
-    tool: Tool, readings: tuple[Reading, ...], contact_m: Floats, concave: bool, middle: Range, widest: Range
-) -> Clearance:
-    judged = judge(tool, readings, contact_m)
+def _clearance(tool: Tool, judged: Judged, concave: bool, middle: Range, widest: Range) -> Clearance:
     verdict: Verdict = "ruled out" if judged.is_out or concave else "fits" if judged.fits else "not sure"
     low, high = tool.diameter_mm
     return Clearance(

@@ -4,12 +4,14 @@ from dataclasses import dataclass
 
 import cv2
 import numpy as np
+from numpy.typing import NDArray
 
 from rotrecon.arrays import Bools, Floats, Indices, freeze
-from rotrecon.camera import transform
+from rotrecon.camera import inverse, rotate, transform
 from rotrecon.clearance import Clearance, clearances
 from rotrecon.contact import Contact, Place, contact_on, within
 from rotrecon.envelope import STANDOFF_M, Box, Envelope, envelope_of
+from rotrecon.frame import Frame
 from rotrecon.outcome import Fit
 from rotrecon.reconstruction import Reconstruction
 from rotrecon.tool_table import Tool
@@ -20,6 +22,8 @@ OWN_SHARE = 0.08
 """Of its radius, within which a point of the cloud is the object's own: real objects are not that round."""
 OWN_SIGMA = 4.0
 """Standard deviations of its depth, alike."""
+ROUNDING_M = 1e-3
+"""More than float32 rounds the place of anything that an arm could reach."""
 SMEAR_PX = 4
 """Pixels beyond those of its sections that matching smears with the object: half a window."""
 
@@ -69,7 +73,7 @@ def grasp_of(result: Reconstruction, tool: Tool, place: Place | None = None) -> 
     more_m = diameter_mm(result.readings[0])[1] / 1000 - 2 * float(solid.radius_at(0.0))
     diameter_m = 2 * float(solid.radius_at(place.along_m)) + max(more_m, 0.0)
     envelope = envelope_of(tool, solid, contact, diameter_m)
-    (clearance,) = clearances(result.readings, contact.point_m, fit.concave, (tool,))
+    (clearance,) = clearances(result.readings, contact.point_m, fit.concave, (tool,), result.settings.dangerous)
     at_contact, on_way = _hits(result, fit, envelope)
     return Grasp(tool, place, contact, envelope, clearance, at_contact, on_way, _unreachable(result, contact, envelope))
 
@@ -88,17 +92,18 @@ def clearances_of(result: Reconstruction) -> tuple[Clearance, ...]:
     if not isinstance(fit, Fit) or solid is None or not result.readings:
         return ()
     contact = contact_on(solid, result.frame.T_base_camera[:3, 3], result.drawing.contact)
-    return clearances(result.readings, contact.point_m, fit.concave, result.settings.tools)
+    return clearances(result.readings, contact.point_m, fit.concave, result.settings.tools, result.settings.dangerous)
 
 
-def strange(result: Reconstruction, fit: Fit) -> Bools:
+def strange(result: Reconstruction, fit: Fit, among: Bools | None = None) -> Bools:
     """Which points (H W,) of the frame's cloud are not the object's: nor on its surface, nor beside its pixels.
 
-    The pixels of its sections, that is: what was merely segmented with it may be the table it stands on.
+    The pixels of its sections, that is: what was merely segmented with it may be the table it stands on. Of all points
+    with depth, or of those `among` them only.
     """
     frame = result.frame
     points_m = frame.points_m.reshape(-1, 3)
-    known = np.isfinite(points_m[:, 2])
+    known = np.isfinite(points_m[:, 2]) if among is None else among.copy()
     own = np.zeros(frame.depth_m.shape, dtype=np.uint8)
     if result.sections is not None:
         own.ravel()[result.sections.pixel] = 1
@@ -128,10 +133,11 @@ def _own_ends(fit: Fit, margin_m: float) -> tuple[float, float]:
 def _hits(result: Reconstruction, fit: Fit, envelope: Envelope) -> tuple[Hits, Hits]:
     """What is in the tool at its place, and only in what it sweeps before."""
     frame = result.frame
-    pixel = np.flatnonzero(strange(result, fit))
-    in_base = transform(frame.T_base_camera, frame.points_m.reshape(-1, 3)[pixel])
-    near = envelope.way.holds(in_base)
-    pixel, in_base = pixel[near], in_base[near]
+    pixel, in_base = points_in(envelope.way, frame)
+    among = np.zeros(frame.depth_m.size, dtype=np.bool_)
+    among[pixel] = True
+    foreign = strange(result, fit, among)[pixel]
+    pixel, in_base = pixel[foreign], in_base[foreign]
     there = _in_any((envelope.mouth, *envelope.solid), in_base)
     solid = fit.solid.moved(frame.T_base_camera)
 
@@ -140,6 +146,21 @@ def _hits(result: Reconstruction, fit: Fit, envelope: Envelope) -> tuple[Hits, H
         return Hits(pixel[which].astype(np.int32), nearest_m)
 
     return hits(there), hits(~there)
+
+
+def points_in(box: Box, frame: Frame) -> tuple[NDArray[np.intp], Floats]:
+    """Index (n,) into the flattened frame, and place (n, 3) in base coordinates, of the points in a box.
+
+    Between its two sides that are nearest to each other there are few: only those are looked at closely.
+    """
+    T, thin = inverse(frame.T_base_camera), int(np.argmin(box.half_m))
+    across, points_m = rotate(T, box.turn[thin]), frame.points_m.reshape(-1, 3)
+    middle_m = float(transform(T, box.center_m) @ across)
+    off_m = np.abs(points_m @ across.astype(np.float32) - np.float32(middle_m))
+    pixel = np.flatnonzero(off_m <= box.half_m[thin] + ROUNDING_M)
+    in_base = transform(frame.T_base_camera, points_m[pixel])
+    held = box.holds(in_base)
+    return pixel[held], in_base[held]
 
 
 def _in_any(boxes: tuple[Box, ...], points_m: Floats) -> Bools:

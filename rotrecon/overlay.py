@@ -64,7 +64,11 @@ def with_segmentation(image: Bytes, result: Reconstruction, stage: Stage = "obje
             flags=cv2.INTER_NEAREST | cv2.WARP_INVERSE_MAP,
         ),
     )
-    return blend(image, palette[category], category > 0, opacity)
+    left, top, width, height = cv2.boundingRect(category)  # most of the frame stays as it is
+    cut, colored = np.s_[top : top + height, left : left + width], image.copy()
+    if width and height:
+        colored[cut] = blend(image[cut], palette[category[cut]], category[cut] > 0, opacity)
+    return colored
 
 
 def _categories(segmentation: Segmentation, stage: Stage) -> Bytes:

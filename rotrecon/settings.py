@@ -3,6 +3,7 @@
 from dataclasses import dataclass, field
 from typing import Literal
 
+from rotrecon.primitives import Kind
 from rotrecon.tool_table import ToolTable, default_tools
 
 Method = Literal["robust", "paper"]
@@ -91,3 +92,5 @@ class Settings:
     asked_cost: float = 25.0
     """The same for a kind that was asked for: worse than this, the depths speak against it."""
     tools: ToolTable = field(default_factory=default_tools)
+    dangerous: frozenset[Kind] = frozenset()
+    """Classes marked dangerous: to them may be put only what the tool table says may be."""

@@ -9,7 +9,7 @@ import numpy as np
 from rotrecon.arrays import Floats, freeze
 from rotrecon.contact import PROPOSED, Place, contact_on
 from rotrecon.outcome import Range
-from rotrecon.primitives import Frustum, Primitive, Revolution, in_words
+from rotrecon.primitives import Frustum, Kind, Primitive, Revolution, in_words
 from rotrecon.tool_table import Tool, ToolTable
 
 STRAIGHT_RAD: Range = (-0.05, 0.05)
@@ -101,11 +101,13 @@ def propose_tool(
     concave: bool,
     tools: ToolTable,
     place: Place = PROPOSED,
+    dangerous: frozenset[Kind] = frozenset(),
 ) -> ToolProposal | NoTool:
     """The first tool of the table that fits whatever the object may be, seen by a camera at `camera_center_m` (3,).
 
     The first reading is the chosen one: contact and approach are its. A tool fits when it fits every reading over its
-    whole intervals; it is ruled out when it fits none anywhere; in between it is not sure. A tool that fits is proposed
+    whole intervals; it is ruled out when it fits none anywhere; in between it is not sure. To a class marked
+    `dangerous` fit those alone that the table says may be put to one. A tool that fits is proposed
     even where one before it in the table is not sure: it is right whichever way that doubt is settled, and the order of
     the table is a preference among tools that fit. Where no tool fits, NoTool. Raises ValueError without a reading.
     """
@@ -117,7 +119,7 @@ def propose_tool(
     reasons: list[str] = []
     unsure: list[str] = []
     for tool in tools:
-        judged = judge(tool, readings, contact.point_m)
+        judged = judge(tool, readings, contact.point_m, dangerous)
         if judged.fits:
             return ToolProposal(tool, contact.point_m, contact.approach, tuple(unsure))
         reasons.append(f"{tool.name}: {judged.why}")
@@ -125,9 +127,11 @@ def propose_tool(
     return NoTool(tuple(reasons), tuple(unsure))
 
 
-def judge(tool: Tool, readings: Sequence[Reading], contact_m: Floats) -> Judged:
+def judge(
+    tool: Tool, readings: Sequence[Reading], contact_m: Floats, dangerous: frozenset[Kind] = frozenset()
+) -> Judged:
     """What speaks against a tool at a contact (3,), for all that the object may be."""
-    objections = [_objections(tool, reading, contact_m) for reading in readings]
+    objections = [_objections(tool, reading, contact_m, dangerous) for reading in readings]
     return Judged(*_verdict(objections)) if any(objections) else Judged("", False)
 
 
@@ -143,10 +147,11 @@ def _verdict(objections: Sequence[Sequence[_Objection]]) -> tuple[str, bool]:
     return "; ".join([f"{' and '.join(whys)}: {'ruled out' if is_out else 'not sure'}", *remedies]), is_out
 
 
-def _objections(tool: Tool, reading: Reading, contact_m: Floats) -> Sequence[_Objection]:
+def _objections(tool: Tool, reading: Reading, contact_m: Floats, dangerous: frozenset[Kind]) -> Sequence[_Objection]:
     """What speaks against a tool for one reading: the first that is certain, or else all; nothing when it fits."""
     checks = (
         _kind(tool, reading),
+        _danger(tool, reading, dangerous),
         _diameter(tool, reading),
         _depth(tool, reading),
         _length(tool, reading),
@@ -171,6 +176,13 @@ def _kind(tool: Tool, reading: Reading) -> _Objection | None:
     has = _range((degrees(taper_rad[0]), degrees(taper_rad[1])))
     why = f"takes a half angle up to {degrees(STRAIGHT_RAD[1]):.1f} degrees, the cone has {has} degrees"
     return _Objection(why, "draw more of its length", certain=False)
+
+
+def _danger(tool: Tool, reading: Reading, dangerous: frozenset[Kind]) -> _Objection | None:
+    kind = reading.solid.kind
+    if tool.dangerous_ok or kind not in dangerous:
+        return None
+    return _Objection(f"may not be put to a {in_words(kind)}, which is marked dangerous")
 
 
 def _diameter(tool: Tool, reading: Reading) -> _Objection | None:

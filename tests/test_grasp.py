@@ -3,6 +3,7 @@
 from dataclasses import replace
 from functools import cache
 
+import cv2
 import numpy as np
 import pytest
 from hypothesis import given, settings
@@ -11,8 +12,8 @@ from hypothesis import strategies as st
 from rotrecon.camera import inverse, transform
 from rotrecon.clearance import clearances
 from rotrecon.contact import Place, contact_on, limits_of, within
-from rotrecon.envelope import BODY_M, STANDOFF_M, envelope_of
-from rotrecon.grasp import Grasp, clearances_of, grasp_of, shown_tool
+from rotrecon.envelope import BODY_M, STANDOFF_M, Box, envelope_of
+from rotrecon.grasp import Grasp, clearances_of, grasp_of, points_in, shown_tool
 from rotrecon.outcome import Fit
 from rotrecon.primitives import Primitive, Sphere
 from rotrecon.reconstruct import reconstruct
@@ -72,6 +73,24 @@ def test_jaws_that_do_not_get_past_the_middle_are_ruled_out() -> None:
     assert "20 mm deep" in out.why
     (open_,) = clearances((Reading(pipe(0.04), (0.038, 0.042)),), CENTER_M, False, (shallow,))
     assert open_.verdict == "not sure"
+
+
+@settings(max_examples=60, deadline=None)
+@given(
+    st.tuples(*[st.floats(-0.6, 0.6)] * 2, st.floats(-0.3, 1.2)),
+    st.tuples(*[st.floats(0.01, 0.4)] * 3),
+    st.tuples(*[st.floats(-3.0, 3.0)] * 3),
+)
+def test_what_is_in_a_box_is_found_wherever_it_is(
+    center: tuple[float, ...], half: tuple[float, ...], turn: tuple[float, ...]
+) -> None:
+    frame = exact_frame(cylinder(np.array([0.0, 0.0, 0.8]), np.array([0.0, 1.0, 0.0]), 0.06))
+    box = Box(cv2.Rodrigues(np.array(turn))[0], np.array(center), np.array(half))
+    pixel, in_base = points_in(box, frame)
+    points_m = frame.points_m.reshape(-1, 3).astype(np.float64)
+    everywhere = np.flatnonzero(box.holds(transform(frame.T_base_camera, points_m)))
+    assert sorted(pixel.tolist()) == everywhere.tolist()
+    assert np.allclose(in_base, transform(frame.T_base_camera, points_m[pixel]))
 
 
 def replace_tool(tool: Tool, depth_mm: float) -> Tool:

@@ -19,7 +19,7 @@ from plyfile import PlyData
 
 from app.digest import evidence_digest
 from app.drawing_text import parse_area, parse_axis
-from app.record.entries import Entry
+from app.record.entries import Entry, Head, link
 from app.record.errors import NoSuchEntry
 from app.record.evidence import Decision, decision_of, evidence_of, proposal, replay
 from app.record.store import Record
@@ -159,7 +159,7 @@ def test_the_report_is_one_page_that_needs_nothing_else(decision):
     page = Page(text)
     assert page.open == []
     assert not {"script", "link", "iframe", "a", "form"} & set(page.tags)
-    assert len(page.addresses) == 3
+    assert len(page.addresses) == 3 + (decision.evidence.answer["tool"] is not None)
     for address in page.addresses:
         head, content = address.split(",")
         assert head == "data:image/jpeg;base64"
@@ -177,7 +177,29 @@ def test_the_report_says_the_recorded_numbers(tin):
     assert page.fields["tool"] == "mechanical cutter"
     assert page.fields["result"].strip().startswith(f"cylinder, {tin.evidence.answer['diameter_mm']:.1f} ± ")
     assert "differs" not in page.fields
-    assert page.tags.count("svg") == 1
+    assert page.tags.count("svg") == 2
+    assert "overridden" not in page.fields
+    assert "in-the-way" not in page.fields
+
+
+def test_the_report_of_an_override_names_the_tool_that_was_chosen_and_the_one_that_was_not(tin):
+    content = tin.entry.content
+    said = {
+        "tool": "clipper",
+        "override": "the cutter is blunt",
+        "in_the_way": "It would hit a pipe.",
+        "seconds": 120.0,
+    }
+    head = Head(content["id"] - 1, content["previous"])
+    chosen = link(Entry("overridden", "ann", content["digest"], said), head, content["versions"])
+    text = export_decision(replace(tin, entry=chosen, trail=(*tin.trail[:2], chosen)), "html").decode()
+    page = Page(text)
+    assert page.fields["tool"] == "clipper"
+    assert "answer was:\nmechanical cutter" in page.fields["overridden"]
+    assert "the cutter is blunt" in page.fields["words"]
+    assert "It would hit a pipe" in page.fields["words"]
+    assert "good for 120 s" in page.fields["words"]
+    assert "The clipper at its place" in text
 
 
 def test_a_report_of_a_refusal_says_why(wall):

@@ -1,5 +1,6 @@
 """Which tool fits, for all that an object may be: laws over intervals and readings."""
 
+import re
 from itertools import product
 from typing import Literal, get_args
 
@@ -80,6 +81,7 @@ def test_a_tool_is_ruled_out_only_where_it_fits_nothing_of_the_interval(tool: To
     assume(isinstance(answer, NoTool))
     assert isinstance(answer, NoTool)
     assert ("not sure" if answer.unsure else "ruled out") in answer.reasons[0]
+    assert all(re.search(r": not sure; \w+ \w+ ", why) for why in answer.unsure), "what would settle it is said"
     if not answer.unsure:
         assert not any(fits(tool, point) for point in points_in(reading, (0.0, 0.3, 0.6, 1.0)))
 

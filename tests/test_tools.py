@@ -2,12 +2,14 @@
 
 from math import inf, radians
 
+import msgspec
 import numpy as np
 import pytest
 
-from rotrecon.primitives import Frustum, Sphere
+from rotrecon.clearance import clearances
+from rotrecon.primitives import Frustum, Kind, Sphere
 from rotrecon.tool_table import Tool, ToolTable, default_tools
-from rotrecon.tools import STRAIGHT_RAD, NoTool, Reading, ToolProposal, propose_tool
+from rotrecon.tools import STRAIGHT_RAD, WHICH_KIND, NoTool, Reading, ToolProposal, propose_tool
 from tests.solids import ALONG, CAMERA_M, CENTER_M, pipe
 
 
@@ -143,3 +145,28 @@ def test_what_is_no_interval_or_nothing_at_all_is_the_callers_mistake():
             Reading(pipe(), interval)
     with pytest.raises(ValueError, match="no reading"):
         propose_tool((), CAMERA_M, False, default_tools())
+
+
+def test_a_class_marked_dangerous_gets_only_what_may_be_put_to_one():
+    cutter, *others = default_tools()
+    safe = msgspec.structs.replace(cutter, name="long cutter", dangerous_ok=True)
+    marked = frozenset[Kind]({"cylinder"})
+    tools = (cutter, safe, *others)
+    answer = propose_tool((Reading(pipe()),), CAMERA_M, False, tools, dangerous=marked)
+    assert isinstance(answer, ToolProposal)
+    assert answer.tool is safe
+    none = propose_tool((Reading(pipe()),), CAMERA_M, False, default_tools(), dangerous=marked)
+    assert isinstance(none, NoTool)
+    assert none.reasons[0] == "mechanical cutter: may not be put to a cylinder, which is marked dangerous: ruled out"
+    (shown, *_) = clearances((Reading(pipe()),), np.zeros(3), False, default_tools(), marked)
+    assert shown.verdict == "ruled out"
+
+
+def test_what_may_be_dangerous_is_not_sure_and_says_what_settles_it():
+    cutter, *_ = default_tools()
+    both = msgspec.structs.replace(cutter, takes=("cylinder", "cone"))
+    readings = (Reading(pipe()), Reading(pipe(kind="cone", half_angle_rad=0.2)))
+    answer = propose_tool(readings, CAMERA_M, False, (both,), dangerous=frozenset({"cone"}))
+    assert isinstance(answer, NoTool)
+    assert answer.unsure
+    assert WHICH_KIND in answer.unsure[0]

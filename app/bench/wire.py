@@ -37,19 +37,7 @@ class WirePage:
 
     def drag(self, phase: str, start: Pixel, end: Pixel, *, shift: bool = False) -> None:
         """One step of a drag on the picture: start, update or end."""
-        self._send(
-            type="SceneNodeDragMessage",
-            phase=phase,
-            name=PICTURE,
-            instance_index=None,
-            start_position=self._point(start),
-            start_screen_pos=(0.0, 0.0),
-            end_position=self._point(end),
-            end_screen_pos=(0.0, 0.0),
-            button="left",
-            modifier="shift" if shift else None,
-            owner=self._owner,
-        )
+        self._send(drag_message(self._frame, self._owner, phase, start, end, shift=shift))
 
     def last_departure_s(self, quiet_s: float) -> float | None:
         """When the last batch left the server, by its performance counter; waits until nothing comes any more."""
@@ -63,26 +51,51 @@ class WirePage:
             departure = _departure_s(batch)
 
     def _send_camera(self) -> None:
-        width, height = CANVAS_PX
-        self._send(
-            type="ViewerCameraMessage",
-            wxyz=(1.0, 0.0, 0.0, 0.0),
-            position=(0.0, 0.0, 0.0),
-            fov=1.0,
-            near=0.01,
-            far=100.0,
-            image_height=height,
-            image_width=width,
-            look_at=(0.0, 0.0, 1.0),
-            up_direction=(0.0, -1.0, 0.0),
-        )
+        self._send(camera_message())
 
-    def _send(self, **message: object) -> None:
+    def _send(self, message: dict[str, object]) -> None:
         self._socket.send(msgspec.msgpack.encode(message))
 
-    def _point(self, pixel: Pixel) -> tuple[float, ...]:
-        """A point of a pixel's sight line, in base coordinates."""
-        return tuple(transform(self._frame.T_base_camera, self._frame.camera.unproject(pixel, 1.0)).tolist())
+
+def camera_message() -> dict[str, object]:
+    """What a page says first."""
+    width, height = CANVAS_PX
+    return {
+        "type": "ViewerCameraMessage",
+        "wxyz": (1.0, 0.0, 0.0, 0.0),
+        "position": (0.0, 0.0, 0.0),
+        "fov": 1.0,
+        "near": 0.01,
+        "far": 100.0,
+        "image_height": height,
+        "image_width": width,
+        "look_at": (0.0, 0.0, 1.0),
+        "up_direction": (0.0, -1.0, 0.0),
+    }
+
+
+def drag_message(
+    frame: Frame, owner: str, phase: str, start: Pixel, end: Pixel, *, shift: bool = False
+) -> dict[str, object]:
+    """One step of a drag on the picture of a page: start, update or end."""
+    return {
+        "type": "SceneNodeDragMessage",
+        "phase": phase,
+        "name": PICTURE,
+        "instance_index": None,
+        "start_position": _point(frame, start),
+        "start_screen_pos": (0.0, 0.0),
+        "end_position": _point(frame, end),
+        "end_screen_pos": (0.0, 0.0),
+        "button": "left",
+        "modifier": "shift" if shift else None,
+        "owner": owner,
+    }
+
+
+def _point(frame: Frame, pixel: Pixel) -> tuple[float, ...]:
+    """A point of a pixel's sight line, in base coordinates."""
+    return tuple(transform(frame.T_base_camera, frame.camera.unproject(pixel, 1.0)).tolist())
 
 
 def _departure_s(batch: bytes) -> float:

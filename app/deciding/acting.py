@@ -80,7 +80,7 @@ def _overriding(deciding: Deciding, case: Case, event: OverrideTyped) -> Decidin
     reason = " ".join(event.reason.split())
     if event.tool not in case.offer.tools:
         return "Choose a tool of the table."
-    if event.tool == case.offer.tool:
+    if event.tool not in case.offer.choices:
         return "That is the proposed tool: it needs no override."
     if len(reason) < deciding.settings.least_reason:
         return f"Type the reason, in at least {deciding.settings.least_reason} characters."

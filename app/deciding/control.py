@@ -2,7 +2,15 @@
 
 from dataclasses import replace
 
-from app.deciding.events import ControlAsked, ControlGiven, ControlTaken, HandoverAnswered, PageCame, PageWent
+from app.deciding.events import (
+    ControlAsked,
+    ControlGiven,
+    ControlTaken,
+    HandoverAnswered,
+    PageCame,
+    PageHeard,
+    PageWent,
+)
 from app.deciding.noting import disarmed, refused
 from app.deciding.states import Asked, Control, Deciding, Page
 
@@ -70,11 +78,29 @@ def unanswered(deciding: Deciding) -> Deciding:
     return handed(deciding, asked.page, "the page in control did not answer")
 
 
+def heard(deciding: Deciding, event: PageHeard) -> Deciding:
+    """The page in control is there; of the others nobody needs to know."""
+    if deciding.control.holder != event.page:
+        return deciding
+    return replace(deciding, control=replace(deciding.control, heard=deciding.now))
+
+
+def silent(deciding: Deciding) -> Deciding:
+    """A page in control that does not answer has hung, or cannot be reached: control goes to whoever asks, or back."""
+    control, limit_s = deciding.control, deciding.settings.silent_s
+    if control.holder is None or deciding.now - control.heard <= limit_s:
+        return deciding
+    to = None if control.asked is None else control.asked.page
+    deciding = handed(deciding, to, "the page in control has fallen silent")
+    why = f"This page did not answer for {limit_s:g} s and has lost control: take it again (Decision panel)."
+    return refused(deciding, control.holder, why)
+
+
 def handed(deciding: Deciding, page: int | None, why: str) -> Deciding:
     """Control goes to a page or to nobody; nothing stays armed, and the pictures have to be sent to the new page."""
     deciding = disarmed(deciding, why)
     case = None if deciding.case is None else replace(deciding.case, ready=False, hold=None)
-    return replace(deciding, control=Control(deciding.control.pages, page), case=case)
+    return replace(deciding, control=Control(deciding.control.pages, page, heard=deciding.now), case=case)
 
 
 def known(control: Control, page: int) -> bool:

@@ -43,6 +43,11 @@ class PageWent(FromPage):
 
 
 @dataclass(frozen=True)
+class PageHeard(FromPage):
+    """A page has said something, or has answered that it is there."""
+
+
+@dataclass(frozen=True)
 class ControlTaken(FromPage):
     """Control that nobody has is taken."""
 
@@ -155,6 +160,13 @@ class FrameArrived(Timed):
 
 
 @dataclass(frozen=True)
+class AreaCompared(Timed):
+    """The area, drawn anew, was compared with the newest frame."""
+
+    changed: bool
+
+
+@dataclass(frozen=True)
 class Written(Timed):
     """The first so many entries of the outbox are on disk."""
 
@@ -176,6 +188,7 @@ class ClockTicked(Timed):
 DecisionEvent = (
     PageCame
     | PageWent
+    | PageHeard
     | ControlTaken
     | ControlGiven
     | ControlAsked
@@ -193,6 +206,7 @@ DecisionEvent = (
     | FrameOpened
     | FrameReopened
     | FrameArrived
+    | AreaCompared
     | Written
     | NotWritten
     | ClockTicked

@@ -2,7 +2,8 @@
 
 from dataclasses import replace
 
-from app.deciding.states import Case, Deciding, Proposed, Said
+from app.deciding.settings import DecisionSettings
+from app.deciding.states import Case, Deciding, Proposed, Rejected, Said
 from app.record.entries import Entry, EntryKind
 
 PROGRAM = "rotrecon"
@@ -16,8 +17,10 @@ def noted(deciding: Deciding, kind: EntryKind, who: str, **said: object) -> Deci
     if case is None:
         entry = Entry(kind, who, payload=payload)
     else:
-        override = None if case.override is None else case.override.reason
-        about = {"proposal": case.number, "tool": case.tool} | ({} if override is None else {"override": override})
+        about: dict[str, object] = {"proposal": case.number, "tool": case.tool}
+        if case.override is not None:
+            about |= {"override": case.override.reason}
+            about |= {"in_the_way": " ".join(case.in_the_way)} if case.in_the_way else {}
         entry = Entry(kind, who, case.offer.digest, {**about, **payload})
     return replace(deciding, outbox=(*deciding.outbox, entry))
 
@@ -53,3 +56,11 @@ def proposed_again(deciding: Deciding, case: Case) -> Deciding:
     """The decision with the same evidence proposed under a new number, as if nothing had been done with it."""
     count = deciding.count + 1
     return replace(deciding, case=Case(count, case.offer, named=case.named), count=count)
+
+
+def resettled(deciding: Deciding, settings: DecisionSettings) -> Deciding:
+    """The decision under other settings: what was armed or confirmed under the earlier ones is so no more."""
+    case = deciding.case
+    if case is not None and not isinstance(case.stage, Proposed | Rejected):
+        deciding = proposed_again(noted(deciding, "voided", PROGRAM, reason="a setting was changed"), case)
+    return replace(deciding, settings=settings)

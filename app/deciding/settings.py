@@ -27,6 +27,9 @@ class DecisionSettings:
     """Frames of a source with a stated rate that may be missing before its sequence has stalled."""
     answer_s: float = 15.0
     """Whoever is in control and does not answer for so long when asked for it is not there, and loses it."""
+    silent_s: float = 20.0
+    """A page in control that nothing is heard of for so long hangs, or its network is dead, and loses control. It is
+    asked several times meanwhile; one that draws slowly answers within some seconds."""
     quiet_s: float = 5.0
     """The same refusal to the same page is told and recorded once in so long: a held button is one action."""
     least_reason: int = 8

@@ -1,5 +1,6 @@
 """What the decision is made of: who is in control, which frame is held, what is proposed, and how far it has got."""
 
+from collections.abc import Mapping
 from dataclasses import dataclass, field
 from typing import Literal
 
@@ -33,6 +34,8 @@ class Control:
     pages: tuple[Page, ...] = ()
     holder: int | None = None
     asked: Asked | None = None
+    heard: float = 0.0
+    """When the page in control was heard of last."""
 
     def name(self, page: int | None) -> str:
         """Who is at a page."""
@@ -54,6 +57,13 @@ class Offer:
     """Names of the tool table, which an override chooses from."""
     for_dangerous: frozenset[str] = frozenset()
     """Those that may be put to a class marked dangerous."""
+    in_the_way: Mapping[str, tuple[str, ...]] = field(default_factory=dict[str, tuple[str, ...]])
+    """Why a tool cannot be at its place, by the names of those of which there is something to say: a sentence each."""
+
+    @property
+    def choices(self) -> tuple[str, ...]:
+        """Tools that an override may name: the proposed one only where something is in its way."""
+        return tuple(tool for tool in self.tools if tool != self.tool or tool in self.in_the_way)
 
 
 @dataclass(frozen=True)
@@ -129,6 +139,11 @@ class Case:
         """The tool that would be confirmed."""
         return self.offer.tool if self.override is None else self.override.tool
 
+    @property
+    def in_the_way(self) -> tuple[str, ...]:
+        """Why that tool cannot be at its place: a sentence each, none where nothing was found."""
+        return () if self.tool is None else self.offer.in_the_way.get(self.tool, ())
+
 
 @dataclass(frozen=True)
 class Said:
@@ -170,6 +185,10 @@ class Deciding:
         return bool(self.settings.dangerous) and (self.case is None or self.case.named is None)
 
 
+IN_THE_WAY = "Turn the approach or move the contact under \u201cTool\u201d, or override with a reason."
+"""What to do about a tool that cannot be at its place."""
+
+
 def obstacles(deciding: Deciding) -> tuple[str, ...]:
     """Why nothing can be armed or confirmed now, and what to do about it: a sentence each."""
     fault = () if deciding.fault is None else (f"Nothing can be recorded: {deciding.fault}.",)
@@ -193,6 +212,8 @@ def _of_case(deciding: Deciding) -> tuple[str, ...]:
         found.append("No tool is proposed: draw it anew, or override with a reason.")
     elif kind in dangerous and case.tool not in case.offer.for_dangerous:
         found.append(f"The {case.tool} may not be put to a {in_words(kind)}, which is marked dangerous.")
+    elif case.override is None and case.in_the_way:
+        found += [*case.in_the_way, IN_THE_WAY]
     if not case.ready:
         found.append("Its pictures are on their way.")
     return tuple(found)

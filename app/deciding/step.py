@@ -3,8 +3,9 @@
 from dataclasses import replace
 
 from app.deciding.acting import Action, acted
-from app.deciding.control import answered, came, given, no_control, taken, unanswered, went
+from app.deciding.control import answered, came, given, heard, no_control, silent, taken, unanswered, went
 from app.deciding.events import (
+    AreaCompared,
     ClockTicked,
     ControlAsked,
     ControlGiven,
@@ -17,6 +18,7 @@ from app.deciding.events import (
     NotWritten,
     Offered,
     PageCame,
+    PageHeard,
     PageWent,
     PicturesSent,
     Unmeasured,
@@ -37,7 +39,7 @@ MOST_KEPT = 100
 def decide(deciding: Deciding, event: DecisionEvent) -> Deciding:
     """The decision after an event; what is over by then is over before the event counts."""
     deciding = replace(deciding, now=max(deciding.now, event.at))
-    return _guarded(_applied(_guarded(_expired(unanswered(deciding))), event))
+    return _guarded(_applied(_guarded(_expired(silent(unanswered(deciding)))), event))
 
 
 def _applied(deciding: Deciding, event: DecisionEvent) -> Deciding:
@@ -48,13 +50,15 @@ def _applied(deciding: Deciding, event: DecisionEvent) -> Deciding:
             return came(deciding, event)
         case PageWent():
             return went(deciding, event)
+        case PageHeard():
+            return heard(deciding, event)
         case ControlTaken() | ControlAsked():
             return taken(deciding, event)
         case ControlGiven():
             return given(deciding, event)
         case HandoverAnswered():
             return answered(deciding, event)
-        case FrameOpened() | FrameReopened() | FrameArrived():
+        case FrameOpened() | FrameReopened() | FrameArrived() | AreaCompared():
             return _framed(deciding, event)
         case Offered() | Unmeasured() | Voided() | PicturesSent():
             return _proposed(deciding, event)
@@ -105,7 +109,7 @@ def _proposed(deciding: Deciding, event: Offered | Unmeasured | Voided | Picture
             return replace(deciding, case=Case(count, event.offer), count=count, outbox=outbox)
 
 
-def _framed(deciding: Deciding, event: FrameOpened | FrameReopened | FrameArrived) -> Deciding:
+def _framed(deciding: Deciding, event: FrameOpened | FrameReopened | FrameArrived | AreaCompared) -> Deciding:
     watched = deciding.watched
     match event:
         case FrameOpened():
@@ -117,12 +121,14 @@ def _framed(deciding: Deciding, event: FrameOpened | FrameReopened | FrameArrive
                 why = "A live frame does not get newer by itself: take a new one."
             if why is not None or watched is None:
                 return refused(deciding, event.page, why or "")
-            watched = opened(watched.held, deciding.now, event.wall_s)
+            watched = replace(opened(watched.held, deciding.now, event.wall_s), changed=watched.changed)
             return replace(_renewed(deciding, "the frame was opened again"), watched=watched)
         case FrameArrived() if watched is not None:
             watched = arrived(watched, event.facts, deciding.now, event.wall_s, event.changed)
             return replace(deciding, watched=watched)
-        case FrameArrived():
+        case AreaCompared() if watched is not None:
+            return replace(deciding, watched=replace(watched, changed=event.changed))
+        case FrameArrived() | AreaCompared():
             return deciding
 
 

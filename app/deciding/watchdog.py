@@ -77,7 +77,8 @@ def problems(watched: Watched | None, settings: DecisionSettings, now: float) ->
         return ("No frame is held: open one.",)
     found: list[str] = []
     if age_s(watched, now) > settings.max_age_s:
-        found.append(f"The frame is more than {settings.max_age_s / MINUTE_S:g} minutes old: open it again.")
+        remedy = "open it again" if watched.held.source == "recorded" else "take a new one, which the robot pushes in"
+        found.append(f"The frame is more than {settings.max_age_s / MINUTE_S:g} minutes old: {remedy}.")
     if watched.ahead_s > settings.clock_skew_s:
         found.append(
             f"The frame is {watched.ahead_s:.0f} s ahead of this machine's clock: set the clocks, and take a new one."

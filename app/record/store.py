@@ -1,7 +1,7 @@
 """The record on disk: one SQLite database in the user's data folder, or in one that is named."""
 
 import sqlite3
-from collections.abc import Iterator
+from collections.abc import Collection, Iterator
 from contextlib import closing, contextmanager
 from pathlib import Path
 from threading import Lock
@@ -61,7 +61,9 @@ class Record:
             if _format_of(connection) == 0:
                 connection.executescript(f"BEGIN IMMEDIATE; {SCHEMA} COMMIT;")
                 flush_folder(folder)
-            return Record(folder, _checked(connection, folder))
+            record = Record(folder, _checked(connection, folder))
+            connection.execute("CREATE INDEX IF NOT EXISTS entries_by_kind ON entries (kind)")
+            return record
 
     @staticmethod
     def read(folder: Path | None = None) -> "Record":
@@ -102,6 +104,14 @@ class Record:
         query = f"SELECT id, hash, CAST(body AS BLOB) FROM entries {where} ORDER BY id DESC LIMIT ?3"
         rows = self._rows(query, (kind, digest, -1 if last is None else last))
         return tuple(self._written(row) for row in reversed(rows))
+
+    def numbers(self, kinds: Collection[EntryKind] = (), before: int | None = None, most: int = PAGE) -> list[int]:
+        """Numbers of entries, the newest first: of some kinds or of all, and older than one of them."""
+        marks = f"kind IN ({', '.join('?' * len(kinds))})" if kinds else "TRUE"
+        older = "TRUE" if before is None else "id < ?"
+        values = (*kinds, *(() if before is None else (before,)), most)
+        rows = self._rows(f"SELECT id FROM entries WHERE {marks} AND {older} ORDER BY id DESC LIMIT ?", values)
+        return [number for (number,) in rows]
 
     def entry(self, number: int) -> Written:
         """One entry; raises NoSuchEntry."""

@@ -6,6 +6,8 @@ import cv2
 import numpy as np
 
 from rotrecon.arrays import Bytes
+from rotrecon.grasp import grasp_of
+from rotrecon.grasp_overlay import with_grasp
 from rotrecon.overlay import blend, depth_colors, depth_range_m, outlines, with_outlines, with_segmentation
 from rotrecon.reconstruction import Reconstruction
 
@@ -20,20 +22,32 @@ THUMBNAIL_PX, THUMBNAIL_QUALITY = 192, 70
 """Width and quality that make a few kilobytes, as every proposal keeps one."""
 
 
-def report_pictures(result: Reconstruction) -> list[tuple[str, str]]:
-    """Captions, and the pictures as data URLs: the frame with the result, close to the object, and the depth."""
+def report_pictures(result: Reconstruction, tool: str | None) -> list[tuple[str, str]]:
+    """Captions, and the pictures as data URLs: the frame with the result, close to the object, tool, and depth."""
     frame = result.frame
     overlay = with_outlines(with_segmentation(frame.image, result), outlines(result))
     low, high = depth_range_m(frame.depth_m)
     depth = blend(frame.image, depth_colors(frame.depth_m, (low, high)), np.isfinite(frame.depth_m), DEPTH_OPACITY)
+    close_up = _close_up(overlay, result)
     return [
         ("The frame: segmented object, re-projected solid; hidden parts dashed", data_url(overlay)),
-        ("The object", data_url(_close_up(overlay, result))),
+        ("The object; navy: distant, light blue: close, yellow: accepted, red: object", data_url(close_up)),
+        *_with_tool(result, tool),
         (
             f"Depth, from {1000 * low:.0f} mm (bright) to {1000 * high:.0f} mm (dark)",
             data_url(with_outlines(depth, outlines(result))),
         ),
     ]
+
+
+def _with_tool(result: Reconstruction, name: str | None) -> list[tuple[str, str]]:
+    """A tool of the table at its place, if there is anything that it could be put to."""
+    tool = next((tool for tool in result.settings.tools if tool.name == name), None)
+    grasp = None if tool is None else grasp_of(result, tool)
+    if grasp is None:
+        return []
+    image = with_grasp(with_outlines(result.frame.image, outlines(result)), grasp, result.frame)
+    return [(f"The {name} at its place: mouth green, jaws and body yellow, what it would hit pink", data_url(image))]
 
 
 def thumbnail(result: Reconstruction) -> str:

@@ -123,8 +123,8 @@ def _pushed(cell: Cell, access: Access) -> APIRouter:
                     capture = await asyncio.to_thread(read_pushed, file)
                 except NotAScene as error:
                     raise HTTPException(422, str(error)) from error
-        offer = cell.offer(capture, robot.name)
-        return Taken(name=capture.name, views=len(capture.views), notes=capture.notes, arrived_at=offer.when)
+            offer = await asyncio.to_thread(cell.offer, capture, robot.name)
+        return Taken(name=capture.name, views=len(capture.views), notes=capture.notes, arrived_at=offer.arrived_at)
 
     return router
 
@@ -152,5 +152,5 @@ def _health(cell: Cell, guard: Guard) -> Health:
         frame=FrameHealth(name=cell.name, captured_at=captured, age_s=age_s),
         offered=None
         if offered is None
-        else OfferHealth(name=offered.capture.name, who=offered.who, arrived_at=offered.when),
+        else OfferHealth(name=offered.capture.name, who=offered.who, arrived_at=offered.arrived_at),
     )

@@ -62,7 +62,8 @@ def _tool(
     """The tool for a solid in base coordinates; none for a size that is doubtful."""
     if fit.doubts:
         return NoTool(fit.doubts)
-    return propose_tool(readings, camera_center_m, fit.concave, result.settings.tools, result.drawing.contact)
+    settings, place = result.settings, result.drawing.contact
+    return propose_tool(readings, camera_center_m, fit.concave, settings.tools, place, settings.dangerous)
 
 
 def _radius_from(cut: Cut, shape: Shape, settings: Settings) -> float | None:

@@ -11,7 +11,7 @@ from playwright.sync_api import Browser, Locator, expect
 from app.clock import seconds
 from app.console import Console
 from app.decided import decision_of
-from app.deciding.events import ArmPressed, ClockTicked, ControlTaken
+from app.deciding.events import ArmPressed, ClockTicked
 from app.deciding.settings import DecisionSettings
 from app.events import Cleared
 from app.record.errors import StoreError
@@ -85,27 +85,6 @@ def kinds(folder: Path) -> list[str]:
         assert verify(record) is None
         found = [entry.content["kind"] for entry in record.entries()]
     return found[len(found) - 1 - found[::-1].index("proposal") :]
-
-
-@pytest.fixture
-def watcher(proposed: Operator, browser: Browser) -> Iterator[Operator]:
-    """A second page on the same console."""
-    with opened_page(browser) as page:
-        yield Operator(page, proposed.console)
-
-
-def test_arming_and_holding_confirm_in_the_record_and_to_the_robot(proposed: Operator, folder: Path) -> None:
-    arm(proposed)
-    expect(proposed.page.get_by_test_id("countdown")).to_contain_text(" s")
-    told = decision_of(proposed.console.told)
-    assert (told.state, told.valid_until) == ("armed", None)
-    hold(proposed, "confirmed")
-    assert kinds(folder) == ["proposal", "armed", "confirmed"]
-    told = decision_of(proposed.console.told)
-    assert (told.state, told.tool, told.who) == ("confirmed", proposed.value("tool"), "operator")
-    assert told.valid_until is not None
-    assert any("recorded" in reason for reason in told.reasons)
-    expect(proposed.page.get_by_test_id("decision")).to_contain_text("by operator")
 
 
 def test_clicks_and_keys_confirm_nothing(proposed: Operator, folder: Path) -> None:
@@ -207,36 +186,6 @@ def test_a_dangerous_class_is_named_before_anything_of_it_is_shown(careful: Oper
     expect(button(careful, "1. Arm")).to_be_disabled()
 
 
-def test_a_watcher_does_nothing_asks_and_is_handed_control(proposed: Operator, watcher: Operator) -> None:
-    arm(proposed)
-    state(watcher, "armed")
-    expect(watcher.page.get_by_test_id("control")).to_contain_text("operator is in control")
-    for name in ("1. Arm", "2. Hold", "Take control"):
-        expect(button(watcher, name)).to_have_count(0)
-    drawn = proposed.console.session.objects
-    watcher.drag((60, 30), (150, 220))
-    expect(watcher.page.get_by_text("You are watching").last).to_be_visible()
-    button(watcher, "Undo").click()
-    watcher.send(
-        ControlTaken(seconds(), watcher.client_id),
-        ArmPressed(seconds(), watcher.client_id, proposed.console.session.decision.count),
-    )
-    assert proposed.console.session.objects == drawn
-    assert proposed.in_control
-    state(watcher, "armed")
-    button(watcher, "Ask for control").click()
-    button(proposed, "Hand it over").click()
-    watcher.until(lambda: watcher.in_control, "control is handed over")
-    state(proposed, "proposed")
-    expect(button(proposed, "1. Arm")).to_have_count(0)
-    arm(watcher)
-    hold(watcher, "confirmed")
-    watcher.page.close()
-    expect(proposed.page.get_by_test_id("control")).to_contain_text("Nobody is in control")
-    button(proposed, "Take control").click()
-    proposed.until(lambda: proposed.in_control, "control is taken again")
-
-
 def test_an_old_frame_blocks_until_it_is_opened_again(proposed: Operator) -> None:
     """After it the decision's clock is ahead of the machine's, and stands until that has caught up."""
     proposed.send(ClockTicked(seconds() + SLOW_PAGE.max_age_s + 1))
@@ -244,15 +193,3 @@ def test_an_old_frame_blocks_until_it_is_opened_again(proposed: Operator) -> Non
     expect(button(proposed, "1. Arm")).to_be_disabled()
     button(proposed, "Open the frame again").click()
     expect(button(proposed, "1. Arm")).to_be_enabled()
-
-
-def test_a_page_that_comes_back_watches_and_nothing_is_armed(proposed: Operator, folder: Path) -> None:
-    arm(proposed)
-    console, before = proposed.console, proposed.client_id
-    proposed.page.reload()
-    proposed.until(lambda: bool(set(console.pages) - {before}), "the page is back")
-    state(proposed, "proposed")
-    assert console.session.decision.control.holder is None
-    assert kinds(folder)[-1] == "disarmed"
-    expect(button(proposed, "Take control")).to_be_visible()
-    expect(button(proposed, "1. Arm")).to_have_count(0)

@@ -33,6 +33,17 @@ def test_the_tool_is_moved_and_checked_again_and_the_object_looked_at(operator: 
     expect(shown).to_contain_text("Step 2 of 6, run 1")
     expect(page.get_by_test_id("candidates")).to_contain_text("chosen")
 
+    page.get_by_label("Over the picture").click()
+    page.get_by_role("option", name="residuals").click()
+    expect(page.get_by_test_id("residuals")).to_contain_text("outside")
+    page.get_by_role("button", name="3D", exact=True).click()
+    scene = operator.view.client.scene
+    operator.until(lambda: getattr(scene.get_handle_by_name("/residuals"), "visible", False), "they are in the 3D view")
+    assert scene.get_handle_by_name("/world/object") is not None, "in place of what all pages see"
+    page.get_by_role("button", name="Camera", exact=True).click()
+    operator.until(lambda: not scene.get_handle_by_name("/residuals").visible, "they do not hide the picture")
+    operator.settle()
+
     page.get_by_label("Clicks measure a distance").check()
     expect(page.get_by_test_id("distance")).to_contain_text("first point")
     for pixel in ((60.0, 100.0), (250.0, 100.0)):

@@ -1,6 +1,7 @@
 """A decision that is told of events, with a clock of its own."""
 
 from dataclasses import replace
+from math import inf
 
 from app.deciding.events import (
     ArmPressed,
@@ -24,6 +25,8 @@ WALL_S = 1.8e9
 TICK_S = 0.1
 OFFER = Offer(0, "digest 0", "cylinder", "cutter", ("cutter", "clipper", "grip"), frozenset({"grip"}))
 FRAME = FrameFacts("pixels")
+ALWAYS_THERE = DecisionSettings(silent_s=inf)
+"""Nobody falls silent, however long a test waits."""
 
 
 class Table:
@@ -32,7 +35,7 @@ class Table:
     def __init__(
         self, settings: DecisionSettings | None = None, offer: Offer = OFFER, frame: FrameFacts = FRAME
     ) -> None:
-        self.deciding, self.now = Deciding(settings or DecisionSettings()), 100.0
+        self.deciding, self.now = Deciding(settings or ALWAYS_THERE), 100.0
         self.written: list[Entry] = []
         self.do(
             FrameOpened(self.now, frame, WALL_S),

@@ -1,10 +1,13 @@
 """Whatever happens in whatever order: nothing is confirmed that was not armed and held, and nothing stays armed."""
 
+from dataclasses import replace
+
 from hypothesis import settings
 from hypothesis import strategies as st
 from hypothesis.stateful import RuleBasedStateMachine, initialize, rule
 
 from app.deciding.events import (
+    AreaCompared,
     ArmPressed,
     ClassNamed,
     ClockTicked,
@@ -22,6 +25,7 @@ from app.deciding.events import (
     OverrideDropped,
     OverrideTyped,
     PageCame,
+    PageHeard,
     PageWent,
     PicturesSent,
     RejectPressed,
@@ -36,7 +40,7 @@ from app.record.entries import Entry
 from tests.deciding.desk import OFFER, WALL_S, offer
 
 FEW = settings(max_examples=150, stateful_step_count=40, deadline=None)
-LIMITS = DecisionSettings(arm_s=10.0, answer_s=3.0, valid_s=30.0, max_age_s=200.0)
+LIMITS = DecisionSettings(arm_s=10.0, answer_s=3.0, silent_s=20.0, valid_s=30.0, max_age_s=200.0)
 REASON = "a hand is in the way"
 PAGES = st.integers(0, 2)
 MOSTLY_0 = st.sampled_from([0, 0, 0, 0, 1, 2])
@@ -88,6 +92,7 @@ class Machine(RuleBasedStateMachine):
                 pass
 
     def _check(self, before: Deciding, event: DecisionEvent, after: Deciding) -> None:
+        assert after.control.holder is None or after.now - after.control.heard <= LIMITS.silent_s
         was = None if before.case is None else before.case.stage
         now = None if after.case is None else after.case.stage
         if isinstance(now, Armed):
@@ -102,10 +107,11 @@ class Machine(RuleBasedStateMachine):
         assert page == after.control.holder
         assert page in self.came, "the page that armed it is open"
         assert now.since >= self.came[page], "and has been since"
-        assert after.now - now.since <= LIMITS.arm_s
+        assert after.now <= now.since + LIMITS.arm_s
         assert after.case.offer.digest == self.digest
         assert after.fault is None
         assert (page, after.case.number) in self.pictured
+        assert after.case.override is not None or not after.case.in_the_way
         assert not fresh or isinstance(event, ArmPressed)
 
     def _check_decided(self, before: Deciding, event: DecisionEvent, after: Deciding, now: Decided) -> None:
@@ -119,7 +125,7 @@ class Machine(RuleBasedStateMachine):
         assert (now.how == "overridden") == (after.case.override is not None)
         since = before.case.stage.since
         assert (event.page, event.number, since) in self.presses
-        assert event.at - since <= LIMITS.arm_s, "within its time"
+        assert event.at <= since + LIMITS.arm_s, "within its time"
         run = [event.at]
         for by, number, then in reversed(self.ticks[:-1]):
             if (by, number) != (event.page, event.number) or run[-1] - then > LIMITS.hold_gap_s or then < since:
@@ -145,6 +151,14 @@ class Machine(RuleBasedStateMachine):
             self.do(PageCame(self.now, page, f"page {page}"))
             assert self.deciding.control.holder != page, "whoever comes back watches"
 
+    @rule(page=PAGES)
+    def is_heard(self, page: int) -> None:
+        self.do(ClockTicked(self.now))
+        before = self.deciding.control
+        self.do(PageHeard(self.now, page))
+        heard = self.now if before.holder == page else before.heard
+        assert self.deciding.control == replace(before, heard=heard), "nothing else comes of it"
+
     @rule(page=PAGES, kind=st.sampled_from([ControlTaken, ControlTaken, ControlGiven, ControlAsked]))
     def control(self, page: int, kind: type[ControlTaken] | type[ControlGiven] | type[ControlAsked]) -> None:
         self.do(kind(self.now, page))
@@ -153,11 +167,15 @@ class Machine(RuleBasedStateMachine):
     def answers(self, page: int, granted: bool) -> None:
         self.do(HandoverAnswered(self.now, page, granted))
 
-    @rule(tool=st.sampled_from(["grip", "grip", "cutter", None]), sent=st.sampled_from([True, True, False]))
-    def measured(self, tool: str | None, sent: bool) -> None:
+    @rule(
+        tool=st.sampled_from(["grip", "grip", "cutter", None]),
+        sent=st.sampled_from([True, True, False]),
+        hits=st.sampled_from([False, True]),
+    )
+    def measured(self, tool: str | None, sent: bool, hits: bool = False) -> None:
         self.count += 1
         self.digest = f"digest {self.count}"
-        made = offer(self.digest, tool=tool)
+        made = offer(self.digest, tool=tool, in_the_way={"grip": ("It would hit a pipe.",)} if hits else {})
         self.do(Offered(self.now, made, Entry("proposal", "somebody", self.digest)))
         if sent:
             self.pictures(0)
@@ -292,6 +310,11 @@ class Machine(RuleBasedStateMachine):
     def newer(self, pixels: str, sequence: int, ahead_s: float, changed: bool) -> None:
         facts = FrameFacts(pixels, "live", sequence, WALL_S + ahead_s)
         self.do(FrameArrived(self.now, facts, WALL_S, changed))
+        assert not (changed and self.deciding.armed)
+
+    @rule(changed=st.booleans())
+    def drawn_elsewhere(self, changed: bool) -> None:
+        self.do(AreaCompared(self.now, changed))
         assert not (changed and self.deciding.armed)
 
     @rule(page=PAGES, again=st.booleans())

@@ -16,6 +16,7 @@ from app.deciding.events import (
     OverrideDropped,
     OverrideTyped,
     PageCame,
+    PageHeard,
     PageWent,
     PicturesSent,
     RejectPressed,
@@ -30,6 +31,7 @@ from app.record.entries import Entry
 from tests.deciding.desk import ANN, BOB, OFFER, Table, offer
 
 WHY = "the cutter is blunt today"
+SILENCE = DecisionSettings(silent_s=5.0)
 DANGEROUS = DecisionSettings(dangerous=frozenset({"cylinder"}))
 
 
@@ -179,6 +181,31 @@ def test_an_override_takes_a_typed_reason_and_the_same_two_actions(table: Table)
     assert table.written[-1].payload["override"] == WHY
 
 
+def test_a_tool_with_something_in_its_way_is_armed_only_by_an_override_that_says_so() -> None:
+    hit = "At the object it would hit 3 points of the cloud."
+    table = Table(offer=offer("digest 0", in_the_way={"cutter": (hit,)}))
+    table.arm()
+    assert table.state == "proposed"
+    assert table.said_to(ANN) == hit
+    assert obstacles(table.deciding)[-1].startswith("Turn the approach or move the contact")
+    table.do(OverrideTyped(table.now, ANN, table.number, "cutter", "   "))
+    table.arm()
+    assert table.state == "proposed", "without a reason it is none"
+    table.do(OverrideTyped(table.now, ANN, table.number, "cutter", "that is a loose cable, it gives way"))
+    table.arm()
+    table.hold()
+    assert table.kinds[-1] == "overridden"
+    assert table.written[-1].payload["in_the_way"] == hit
+    assert table.written[-1].payload["tool"] == "cutter"
+
+
+def test_what_is_in_the_way_of_another_tool_blocks_nothing() -> None:
+    table = Table(offer=offer("digest 0", in_the_way={"clipper": ("It would hit something.",)}))
+    assert obstacles(table.deciding) == ()
+    assert table.deciding.case is not None
+    assert table.deciding.case.offer.choices == ("clipper", "grip")
+
+
 def test_choosing_another_tool_disarms(table: Table) -> None:
     table.arm()
     table.do(OverrideTyped(table.now, ANN, table.number, "clipper", WHY))
@@ -265,6 +292,40 @@ def test_whoever_does_not_answer_loses_control(table: Table) -> None:
     assert table.deciding.control.holder == ANN
     table.do(ClockTicked(table.later(1.5)))
     assert table.deciding.control.holder == BOB
+
+
+def test_a_page_in_control_that_falls_silent_loses_it_and_is_told() -> None:
+    table = Table(SILENCE)
+    table.arm()
+    table.do(PageHeard(table.later(4.0), ANN), PageHeard(table.later(4.0), BOB))
+    assert table.deciding.control.holder == ANN
+    assert table.state == "armed"
+    table.do(ClockTicked(table.later(1.5)))
+    assert table.deciding.control.holder is None, "what others say does not keep it"
+    assert table.state == "proposed"
+    assert table.written[-1].kind == "disarmed"
+    assert "did not answer for 5 s" in table.said_to(ANN)
+    table.do(PageHeard(table.now, ANN))
+    assert table.deciding.control.holder is None, "a page that comes back watches"
+    table.do(ControlTaken(table.later(60.0), ANN))
+    assert table.deciding.control.holder == ANN, "and may take it again"
+
+
+def test_control_goes_from_a_silent_page_to_the_one_that_asks() -> None:
+    table = Table(SILENCE)
+    table.do(PageHeard(table.later(1.0), ANN), ControlAsked(table.later(4.0), BOB), ClockTicked(table.later(1.5)))
+    assert table.deciding.control.holder == BOB
+    table.do(ClockTicked(table.later(4.0)))
+    assert table.deciding.control.holder == BOB, "whose time begins when it gets it"
+
+
+def test_what_a_silent_page_does_too_late_does_nothing() -> None:
+    table = Table(SILENCE)
+    table.arm()
+    table.later(5.5)
+    table.hold(1.3)
+    assert table.state == "proposed"
+    assert "confirmed" not in table.kinds
 
 
 def test_control_given_back_goes_to_whoever_asked_or_to_nobody(table: Table) -> None:

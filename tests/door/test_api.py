@@ -15,66 +15,19 @@ import numpy as np
 import pytest
 import trimesh
 from websockets.exceptions import ConnectionClosed, InvalidStatus
-from websockets.sync.client import ClientConnection, connect
 
-from app.clock import seconds
-from app.console import Console
-from app.console_items import FromPage
-from app.deciding.events import ControlTaken, PageCame
 from app.digest import evidence_digest
-from app.door.door import Door
-from app.door.hidden_viser import HiddenViser
-from app.door.listening import listen
 from app.door.people import read_people, with_person, write_people
-from app.events import Cleared, Event, PointerDragged
-from app.record.store import Record
+from app.events import Cleared
 from app.robot import stream
-from app.robot.api import robot_routes
-from app.robot.cell import ConsoleCell
 from rotrecon.camera import transform
 from rotrecon.reconstruction import Reconstruction
 from rotrecon.scene.writing import SceneRecord, write_scene
 from rotrecon.settings import Settings
 from tests.door.conftest import SECRET
-from tests.exact import cylinder, exact_frame
+from tests.door.robot_side import DRAWN, SOLID, Cell, zipped
+from tests.exact import exact_frame
 from tests.waiting import WAIT_S, until
-
-SOLID = cylinder(np.array([0.0, 0.0, 0.8]), np.array([0.0, 1.0, 0.0]), 0.06)
-NOBODYS = -1
-"""Number of a page that no browser has opened."""
-DRAWN = (PointerDragged((130.0, 40.0), (190.0, 200.0)), PointerDragged((160.0, 60.0), (160.0, 180.0), shift=True))
-
-
-class Cell:
-    """A console behind a door, with the robot's side."""
-
-    def __init__(self, people: Path) -> None:
-        hidden = HiddenViser()
-        frame = exact_frame(SOLID)
-        self.record = Record.open(people.parent / "record")
-        self.console = Console(frame, "A rod", Settings(), cloud_points=10, open_viser=hidden.open, record=self.record)
-        self.console.start()
-        self.door = Door(hidden, people, listen("127.0.0.1", 0, people, None))
-        cell = ConsoleCell(self.console)
-        self.door.start(robot_routes(cell, self.door.gate, self.door.guard))
-        self.address = f"{self.door.address}/api/v1"
-
-    def client(self, name: str, secret: str = SECRET) -> httpx.Client:
-        return httpx.Client(base_url=self.address, auth=(name, secret), trust_env=False)
-
-    def stream(self, **headers: str) -> ClientConnection:
-        uri = f"{self.address.replace('http', 'ws', 1)}/decision/stream"
-        return connect(uri, additional_headers=headers, proxy=None)
-
-    def do(self, *events: Event) -> None:
-        for event in (PageCame(seconds(), NOBODYS, "Ann"), ControlTaken(seconds(), NOBODYS), *events):
-            self.console.server.get_event_loop().call_soon_threadsafe(self.console.post, FromPage(NOBODYS, event))
-        self.console.wait_until_idle()
-
-    def stop(self) -> None:
-        self.door.stop()
-        self.console.stop()
-        self.record.close()
 
 
 @pytest.fixture(scope="module")
@@ -226,14 +179,6 @@ def test_health_counts_what_was_refused(cell: Cell, robot: httpx.Client) -> None
     assert (after["status"], after["frame"]["name"], after["pages"]) == ("ok", "A rod", 0)
 
 
-def zipped(folder: Path) -> bytes:
-    packed = BytesIO()
-    with ZipFile(packed, "w", ZIP_DEFLATED) as archive:
-        for path in sorted(folder.rglob("*")):
-            archive.write(path, path.relative_to(folder))
-    return packed.getvalue()
-
-
 def test_a_frame_pushed_in_is_announced_and_changes_nothing(cell: Cell, robot: httpx.Client, tmp_path: Path) -> None:
     cell.do(*DRAWN)
     session, frame = cell.console.session, cell.console.frame
@@ -245,7 +190,7 @@ def test_a_frame_pushed_in_is_announced_and_changes_nothing(cell: Cell, robot: h
     assert (offered["name"], offered["who"]) == ("From the arm", "arm")
     cell.console.wait_until_idle()
     now = cell.console.session
-    assert (replace(now, decision=session.decision), cell.console.frame) == (session, frame)
+    assert (replace(now, newer=None, decision=session.decision), cell.console.frame) == (session, frame)
     assert now.decision.watched is not None
     assert now.decision.watched.identical, "a camera never sends the same pixels twice"
 

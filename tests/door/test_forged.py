@@ -3,16 +3,22 @@
 from math import inf, nan
 from typing import Any
 
+import numpy as np
 import pytest
 from hypothesis import HealthCheck, given, settings
 from hypothesis import strategies as st
 from viser import _messages as viser_messages
 from websockets.exceptions import InvalidStatus
 
+from app.bench import forgeries
 from app.door.controls import fits
 from tests.door.conftest import CAMERA, House
 from tests.door.test_messages import CLICK, COMMAND, DRAG, GOOD, HOLD, UPDATE, packed
+from tests.exact import cylinder, exact_frame
 from tests.waiting import until
+
+COMMANDS = ("look", "act", "off")
+SOLID = cylinder(np.array([0.0, 0.0, 0.8]), np.array([0.0, 1.0, 0.0]), 0.06)
 
 
 def state(house: House) -> dict[str, Any]:
@@ -84,6 +90,35 @@ def test_an_operators_page_can_do_only_what_its_controls_can(house: House) -> No
     assert house.door.guard.refused.total() - refused == len(sent) + 1
 
 
+def test_what_the_benchmark_forges_is_refused(house: House) -> None:
+    page, rng, frame = house.page("Anna"), np.random.default_rng(0), exact_frame(SOLID)
+    before, refused = state(house), house.door.guard.refused.total()
+    controls = [(handle._impl.uuid, handle) for name, handle in house.controls.items() if name not in COMMANDS]
+    sorts = [
+        forgeries.other_types({good["type"] for good in GOOD}),
+        forgeries.attributes(controls),
+        forgeries.wrong_values(controls),
+        forgeries.disabled(controls),
+        forgeries.not_numbers(frame),
+        forgeries.malformed(rng, frame),
+    ]
+    sent = [message for sort in sorts for message in forgeries.some(sort, 20, rng)]
+    for message in sent:
+        page.send(message)
+    page.heard_out()
+    assert state(house) == before
+    assert house.door.guard.refused.total() - refused == len(sent)
+    page.close()
+    page = house.page("Walt")
+    before, refused = state(house), house.door.guard.refused.total()
+    for message in (acts := forgeries.acts(controls, frame, str(page.client_id))):
+        page.send(message)
+    page.heard_out()
+    assert state(house) == before
+    assert house.door.guard.refused.total() - refused == len(acts)
+    page.close()
+
+
 def test_a_watchers_page_moves_its_camera_and_nothing_else(house: House) -> None:
     page = house.page("Walt")
     before, refused = state(house), house.door.guard.refused.total()
@@ -149,7 +184,7 @@ VALUES = st.none() | st.booleans() | st.integers() | st.floats() | st.text() | s
 )
 def test_whatever_fits_can_be_cast_by_viser_and_stays_in_range(house: House, value: Any) -> None:
     for name, handle in house.controls.items():
-        if name in ("look", "act", "off") or not fits(handle, value):
+        if name in COMMANDS or not fits(handle, value):
             continue
         low, high = getattr(handle, "min", None), getattr(handle, "max", None)
         if isinstance(value, int | float) and not isinstance(value, bool) and low is not None and high is not None:
