@@ -134,13 +134,17 @@ def test_a_pass_is_signed_and_runs_out(monkeypatch: pytest.MonkeyPatch) -> None:
         assert (passes.read(token) is not None) is valid
 
 
+ALIKE = str.maketrans("+/", "-_")
+"""The two ways of base64 to write the same."""
+
+
 @settings(max_examples=100)
 @given(data=st.data())
 def test_a_pass_with_one_letter_changed_is_none(data: st.DataObject) -> None:
     passes = Passes()
     token = passes.issue("Walt")
     place = data.draw(st.integers(0, len(token) - 2))
-    letter = data.draw(st.characters(codec="ascii").filter(lambda letter: letter != token[place]))
+    letter = data.draw(st.characters(codec="ascii").filter(lambda letter: letter.translate(ALIKE) != token[place]))
     assert passes.read(token[:place] + letter + token[place + 1 :]) is None
 
 
