@@ -20,7 +20,9 @@ from rotrecon.overlay import blend, depth_colors, depth_range_m, outlines, with_
 from rotrecon.reconstruct import reconstruct
 from rotrecon.scene.reading import read_scene
 from rotrecon.settings import Settings
+from tests.browser.conftest import SLOW_PAGE
 from tests.browser.operator import CHROMIUM, CHROMIUM_ARGS, Operator
+from tests.browser.steps import arm, hold
 from tests.recordings import DATA
 
 PICTURES = Path(__file__).parents[1] / "docs" / "pictures"
@@ -36,7 +38,9 @@ def main() -> None:
     PICTURES.mkdir(parents=True, exist_ok=True)
     write_figures(frame)
     with TemporaryDirectory() as folder, closing(Record.open(Path(folder))) as record:
-        console = Console(frame, capture.name, Settings(), port=0, notes=capture.notes, record=record)
+        console = Console(
+            frame, capture.name, Settings(), port=0, notes=capture.notes, record=record, deciding=SLOW_PAGE
+        )
         console.start()
         try:
             write_console(console)
@@ -45,7 +49,7 @@ def main() -> None:
 
 
 def write_console(console: Console) -> None:
-    """The page in both views."""
+    """The page in both views, and on the way to a confirmed tool."""
     with sync_playwright() as playwright:
         browser = playwright.chromium.launch(executable_path=CHROMIUM, args=CHROMIUM_ARGS)
         page = browser.new_page(viewport={"width": 1280, "height": 720})
@@ -64,6 +68,16 @@ def write_console(console: Console) -> None:
         operator.settle()
         operator.frames(10)
         save(page, "3d-view.jpg")
+        page.keyboard.press("c")
+        page.get_by_role("tab", name="Decision").click()
+        arm(operator)
+        operator.frames(10)
+        save(page, "armed.jpg")
+        hold(operator, "confirmed")
+        page.get_by_role("tab", name="History").click()
+        page.get_by_text("confirmed").last.wait_for()
+        operator.frames(10)
+        save(page, "history.jpg")
 
 
 def draw(operator: Operator) -> None:

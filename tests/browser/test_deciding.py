@@ -6,7 +6,7 @@ from dataclasses import replace
 from pathlib import Path
 
 import pytest
-from playwright.sync_api import Browser, Locator, expect
+from playwright.sync_api import Browser, expect
 
 from app.clock import seconds
 from app.console import Console
@@ -16,11 +16,11 @@ from app.deciding.settings import DecisionSettings
 from app.events import Cleared
 from app.record.errors import StoreError
 from app.record.store import Record
-from app.record.verify import verify
 from rotrecon.settings import Settings
 from rotrecon.simulation.simulate import Simulated
 from tests.browser.conftest import SLOW_PAGE, opened_page
-from tests.browser.operator import TIMEOUT_S, Operator
+from tests.browser.operator import Operator
+from tests.browser.steps import arm, button, hold, kinds, state
 from tests.browser.test_page import drawing_events
 
 WHY = "the cutter is blunt today"
@@ -53,38 +53,6 @@ def proposed(shared: Operator, scene: Simulated) -> Operator:
     state(shared, "proposed")
     expect(button(shared, "1. Arm")).to_be_enabled()
     return shared
-
-
-def button(operator: Operator, name: str) -> Locator:
-    return operator.page.get_by_role("button", name=name)
-
-
-def state(operator: Operator, name: str) -> None:
-    """Wait until the page shows a state."""
-    expect(operator.page.get_by_test_id("decision")).to_have_attribute("data-state", name, timeout=1000 * TIMEOUT_S)
-    operator.settle()
-
-
-def arm(operator: Operator) -> None:
-    button(operator, "1. Arm").click()
-    state(operator, "armed")
-
-
-def hold(operator: Operator, until: str) -> None:
-    """Press the second button and keep it pressed until the page shows a state."""
-    button(operator, "2. Hold").hover()
-    operator.page.mouse.down()
-    state(operator, until)
-    operator.page.mouse.up()
-    operator.settle()
-
-
-def kinds(folder: Path) -> list[str]:
-    """What was recorded, the latest drawing's entries first to last."""
-    with closing(Record.read(folder)) as record:
-        assert verify(record) is None
-        found = [entry.content["kind"] for entry in record.entries()]
-    return found[len(found) - 1 - found[::-1].index("proposal") :]
 
 
 def test_clicks_and_keys_confirm_nothing(proposed: Operator, folder: Path) -> None:

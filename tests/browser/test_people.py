@@ -21,7 +21,7 @@ from rotrecon.settings import Settings
 from rotrecon.simulation.simulate import Simulated
 from tests.browser.conftest import SLOW_PAGE, VIEWPORT
 from tests.browser.operator import TIMEOUT_S, Operator
-from tests.browser.test_deciding import arm, button, hold, state
+from tests.browser.steps import arm, button, hold, state
 from tests.browser.test_page import drawing_events
 
 CONTRAST = (Path(__file__).parent / "contrast.js").read_text()

@@ -23,7 +23,7 @@ from rotrecon.settings import Settings
 from rotrecon.simulation.simulate import Simulated
 from tests.browser.conftest import SLOW_PAGE, opened_page
 from tests.browser.operator import Operator
-from tests.browser.test_deciding import arm, button, hold, kinds, state
+from tests.browser.steps import arm, button, hold, kinds, state
 from tests.browser.test_page import drawing_events
 
 SECRET = "ten letters or more"
