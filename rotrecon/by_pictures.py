@@ -29,6 +29,8 @@ class Seen:
     """What the pictures leave open."""
     textured: bool = True
     """Whether there is enough to match on most of the object."""
+    held: bool = True
+    """Whether the pictures tell its size at all."""
 
 
 def by_pictures(matched: Seen, held: Held, frame: Frame, kind: Kind | None, settings: Settings) -> Seen:
@@ -55,7 +57,7 @@ def by_pictures(matched: Seen, held: Held, frame: Frame, kind: Kind | None, sett
         return replace(matched, textured=False)
     ranked = tuple(first.shape if one is chosen else one for one in ranked)
     textured = first.textured > FULLY_TEXTURED
-    return Seen(ranked, first.shape, _scene_seen(first, scene, frame), (*first.doubts, *doubts), textured)
+    return Seen(ranked, first.shape, _scene_seen(first, scene, frame), (*first.doubts, *doubts), textured, first.held)
 
 
 def _disagreement(by_depth: Refinement | None, by_drawing: Refinement, scene: Scene) -> tuple[str, ...]:

@@ -103,7 +103,7 @@ def _find(scene: Scene, held: Held, segmented: Reconstruction) -> _Found | FitFa
     seen = by_pictures(Seen(ranked, chosen, scene), held, segmented.frame, kind, settings)
     ranked, chosen, scene = seen.ranked, seen.chosen, seen.scene
     found = _followed_along(ranked, chosen, scene, settings)
-    if not seen.textured and isinstance(found, FitFailure):
+    if not seen.held or (not seen.textured and isinstance(found, FitFailure)):
         advice = "too little texture is seen on the object to match it; light it better, or bring the camera nearer"
         return FitFailure(FailureReason.UNTEXTURED, advice)
     if seen.doubts and isinstance(found, _Found):

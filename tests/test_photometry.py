@@ -16,11 +16,13 @@ from rotrecon.photometry.carrying import Carrier
 from rotrecon.photometry.outlines import CarriedOutline
 from rotrecon.photometry.refinement import Refinement, others_of, refined, sought, weighed
 from rotrecon.photometry.splines import SCIPY, SUPPORT_PX, Spline, spline_of
+from rotrecon.photometry.sureness import sigma_by_outline
 from rotrecon.photometry.visible import clear_of, outward, seen_too
 from rotrecon.rays.ball import Ball
 from rotrecon.rays.fitting import Outline
 from rotrecon.rays.hypotheses import Held
 from rotrecon.rays.lateral import Lateral
+from rotrecon.rays.limbs import limbs_of
 from rotrecon.rays.robust import Ranked
 from rotrecon.rays.surfaces import Surface, turn_of
 from rotrecon.reconstruct import reconstruct
@@ -267,3 +269,25 @@ def test_a_camera_at_the_same_place_is_carried_to_itself():
     carrier = others_of(frame)[0].carrier
     assert np.allclose(carrier.T_view_reference, np.eye(4))
     assert np.allclose(inverse(carrier.T_view_reference), np.eye(4))
+
+
+def outline_of(surface: Surface, focal_px: float) -> Outline:
+    """The limbs of a surface as a camera sees them, to a tenth of a pixel."""
+    point_px = limbs_of(surface, CAMERA, np.linspace(-0.1, 0.1, 41)).point_px
+    return Outline(CAMERA.unproject(point_px, np.ones(len(point_px))).T, np.full(len(point_px), 0.1), focal_px)
+
+
+def test_outlines_along_the_line_between_the_cameras_tell_no_size():
+    T_view_reference = np.eye(4)
+    T_view_reference[0, 3] = -0.06
+    carrier = Carrier(CAMERA, T_view_reference)
+    sigma_m: list[float] = []
+    for direction in (np.array([0.0, 1.0, 0.0]), np.array([1.0, 0.0, 0.0])):
+        surface = Lateral(MIDDLE, turn_of(direction, -MIDDLE), 0.03, 0.0, CAMERA.focal_px, tapers=False)
+        seen = outline_of(surface, CAMERA.focal_px)
+        other = CarriedOutline(outline_of(carrier.surface(surface), CAMERA.focal_px), carrier)
+        sigma_m.append(sigma_by_outline(surface, [seen, other], np.ones(5, dtype=np.bool_), 0.2))
+        assert sigma_by_outline(surface, [seen], np.ones(5, dtype=np.bool_), 0.2) > 0.1 * surface.radius_m
+    across, along = sigma_m
+    assert across < 0.01 * 0.03
+    assert along > 0.1 * 0.03

@@ -8,12 +8,12 @@ import numpy as np
 from rotrecon.arrays import Floats, freeze
 from rotrecon.frame import Frame
 from rotrecon.photometry.carrying import carrier_of
-from rotrecon.photometry.climbing import DEPTH_SHARE, Climbed, climb, moved_px
+from rotrecon.photometry.climbing import DEPTH_SHARE, PLAIN, Climbed, climb, moved_px
 from rotrecon.photometry.drawn import drawn, half_width_px
 from rotrecon.photometry.matches import FEWEST_PIXELS, Other
 from rotrecon.photometry.scanning import TILTS_RAD, scanned
 from rotrecon.photometry.sharpening import sharpened
-from rotrecon.photometry.sureness import covariance_of
+from rotrecon.photometry.sureness import covariance_of, sigma_by_outline
 from rotrecon.photometry.visible import clear_of
 from rotrecon.rays.ball import Ball
 from rotrecon.rays.correlation import Likeness
@@ -39,6 +39,8 @@ TEXTURED = 0.3
 UNTEXTURED_DOUBT, UNTEXTURED_BALL_DOUBT, TEXTURE_HOLDS = 0.015, 0.03, 0.1
 """Standard error of the radius, over the radius, that outline and shading of a plain object leave, and shading alone
 that of a ball; and the share of textured pixels at which nothing of it is left."""
+OUTLINE_TELLS = 0.02
+"""Largest standard error of the radius over the radius that outlines may leave of a plain thing."""
 FULLY_TEXTURED = 0.5
 """Of an object's pixels, how many must have a depth from the pictures to have been enough to match."""
 ALIKE = 5.0
@@ -63,6 +65,8 @@ class Refinement:
     """Whether matched depth was its start."""
     trusted: bool
     """Whether nothing speaks for another start."""
+    held: bool
+    """Whether its size is told by texture, or by its outlines alone."""
 
     def __post_init__(self) -> None:
         freeze(self)
@@ -186,4 +190,8 @@ def _finished(one: Ranked, fit: RayFit, climbed: Climbed, scene: Scene, *, by_de
     residual = predicted(replace(patch, depth_m=depth_m), pixels, surface, sight).residual
     told = {"own_covariance": lambda: covariance, "doubt": 0.0}
     better = replace(fit, surface=surface, pixels=pixels, sight=sight, residual=residual, **told)
-    return Refinement(replace(one, surface=surface, fit=better), depth_m, climbed, textured, by_depth, trusted=False)
+    held = textured > PLAIN or (
+        sigma_by_outline(surface, climbed.edges, climbed.free, scene.length_m) < OUTLINE_TELLS * surface.size_m
+    )
+    whole = replace(one, surface=surface, fit=better)
+    return Refinement(whole, depth_m, climbed, textured, by_depth, trusted=False, held=held)

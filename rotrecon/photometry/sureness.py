@@ -14,6 +14,8 @@ SYSTEMATIC_PX = 0.008
 """What splines, aliasing and a lens shift one picture against the other by, alike over a part of the object."""
 EDGE_PX = 0.05
 """What shading and blur move all edges of an object by, the same way in all pictures."""
+UNKNOWN = 0.3
+"""Share of its distance by which a surface may be anywhere that no outline tells of."""
 PARTS = 4
 """Parts, along each side of the patch, over which that is alike."""
 
@@ -65,6 +67,20 @@ def covariance_of(
     inverse = np.linalg.pinv(information[kept], hermitian=True)
     covariance[kept] = inverse @ ((variance + variance.T) / 2)[kept] @ inverse
     return covariance
+
+
+def sigma_by_outline(surface: Surface, edges: Sequence[Edge], free: Bools, length_m: float) -> float:
+    """Standard error, m, of the radius of a surface so long of which only the outlines in the pictures are known."""
+    unit = surface.units(length_m)
+    unknown_m = UNKNOWN * float(np.linalg.norm(surface.center_m))
+    information = np.diag(1.0 / np.square(unit * unknown_m))
+    for edge in edges:
+        columns = edge.predict(surface).columns
+        information += columns @ columns.T
+    held = np.ix_(free, free)
+    covariance = np.zeros_like(information)
+    covariance[held] = np.linalg.inv(information[held])
+    return float(np.sqrt(covariance[surface.size_place, surface.size_place]))
 
 
 def _texture(match: Match, surface: Surface) -> Floats:
