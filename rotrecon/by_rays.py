@@ -1,53 +1,29 @@
 """The robust method: a solid fitted along the rays, its sections, its intervals, and how sure its kind is."""
 
-from dataclasses import dataclass, replace
+from dataclasses import replace
 
 import numpy as np
 
-from rotrecon.arrays import Bools, Cloud, Floats, freeze
-from rotrecon.axis import Axis, FittedAxis
+from rotrecon.arrays import Bools, Cloud
+from rotrecon.axis import Axis
 from rotrecon.by_pictures import Seen, by_pictures
-from rotrecon.extent import Extent, extent_of
-from rotrecon.frame import Frame, StereoNoise
-from rotrecon.intervals import radius_sigma
-from rotrecon.judgement import doubts_of, failure_of, too_little
-from rotrecon.outcome import Evidence, FailureReason, Fit, FitFailure, PartOf, Range
-from rotrecon.primitives import Primitive
+from rotrecon.extent import extent_of
+from rotrecon.found import Found, reconstruction_of
+from rotrecon.frame import Frame
+from rotrecon.judgement import failure_of, too_little
+from rotrecon.outcome import FailureReason, FitFailure
 from rotrecon.rays.hypotheses import Held, Scene, scene_of
 from rotrecon.rays.lateral import Lateral
 from rotrecon.rays.patch import Patch, patch_of
-from rotrecon.rays.ray_fit import RayFit
 from rotrecon.rays.robust import Ranked, rank
 from rotrecon.rays.starts import robust_line
-from rotrecon.recognition import candidates_of, chosen_of, intervals_of, is_possible, solid_of
+from rotrecon.recognition import chosen_of, intervals_of
 from rotrecon.reconstruction import Cut, Reconstruction
 from rotrecon.section_radii import SectionRadii, section_radii
 from rotrecon.settings import Settings
-from rotrecon.soundness import Soundness, soundness_of
+from rotrecon.soundness import soundness_of
 from rotrecon.stroke.axis_direction import held_direction
-from rotrecon.tools import NoTool, Reading, propose_tool
-from rotrecon.turned.parts import Part
 from rotrecon.turned.turned_fit import fit_turned
-
-
-@dataclass(frozen=True, eq=False)
-class _Found:
-    """The chosen shape and what is known of it."""
-
-    scene: Scene
-    """With the depths that it was compared with."""
-    ranked: tuple[Ranked, ...]
-    chosen: Ranked
-    axis: Axis
-    ends_m: Range
-    """Heights of the ends along the axis, from its point."""
-    extent: Extent | None
-    soundness: Soundness
-    doubts: tuple[str, ...] = ()
-    """What the pictures leave open."""
-
-    def __post_init__(self) -> None:
-        freeze(self)
 
 
 def by_rays(segmented: Reconstruction, depth_m: Cloud) -> Reconstruction:
@@ -83,10 +59,10 @@ def by_rays(segmented: Reconstruction, depth_m: Cloud) -> Reconstruction:
         if isinstance(found, FitFailure):
             failure, left = FitFailure(found.reason, many), Cut(radii.circles, None)
             return replace(segmented, fit=failure, sections=radii.sections, second_cut=left)
-    return _reconstruction(segmented, found, radii)
+    return reconstruction_of(segmented, found, radii)
 
 
-def _find(scene: Scene, held: Held, segmented: Reconstruction) -> _Found | FitFailure:
+def _find(scene: Scene, held: Held, segmented: Reconstruction) -> Found | FitFailure:
     """The most credible shape, or the reason why there is none."""
     kind, settings = segmented.drawing.kind, segmented.settings
     ranked = rank(scene, held)
@@ -106,7 +82,7 @@ def _find(scene: Scene, held: Held, segmented: Reconstruction) -> _Found | FitFa
     if not seen.held or (not seen.textured and isinstance(found, FitFailure)):
         advice = "too little texture is seen on the object to match it; light it better, or bring the camera nearer"
         return FitFailure(FailureReason.UNTEXTURED, advice)
-    if seen.doubts and isinstance(found, _Found):
+    if seen.doubts and isinstance(found, Found):
         return replace(found, doubts=seen.doubts)
     if kind is not None or not isinstance(chosen.surface, Lateral) or not _is_part_only(found, chosen, scene, settings):
         return found
@@ -121,7 +97,7 @@ def _find(scene: Scene, held: Held, segmented: Reconstruction) -> _Found | FitFa
     return better
 
 
-def _is_part_only(found: _Found | FitFailure, chosen: Ranked, scene: Scene, settings: Settings) -> bool:
+def _is_part_only(found: Found | FitFailure, chosen: Ranked, scene: Scene, settings: Settings) -> bool:
     """Whether a cylinder or a cone explains a part of the object along its axis, or all of it badly."""
     if isinstance(found, FitFailure):
         return found.reason == FailureReason.NOT_ROUND
@@ -134,9 +110,7 @@ def _is_part_only(found: _Found | FitFailure, chosen: Ranked, scene: Scene, sett
     return bool(covered < settings.covered_length * (high - low))
 
 
-def _followed_along(
-    ranked: tuple[Ranked, ...], chosen: Ranked, scene: Scene, settings: Settings
-) -> _Found | FitFailure:
+def _followed_along(ranked: tuple[Ranked, ...], chosen: Ranked, scene: Scene, settings: Settings) -> Found | FitFailure:
     """How far along its axis the chosen shape is there, and how sound it is; or why it is no result."""
     assert chosen.fit is not None
     surface = chosen.surface
@@ -150,10 +124,10 @@ def _followed_along(
         axis = Axis(surface.center_m, robust_line(scene.ridge.points_m)[1])
     soundness = soundness_of(chosen.fit, scene.patch, ends_m)
     failure = failure_of(chosen, soundness, scene, settings)
-    return failure or _Found(scene, ranked, chosen, axis, ends_m, extent, soundness)
+    return failure or Found(scene, ranked, chosen, axis, ends_m, extent, soundness)
 
 
-def _sections(found: _Found, segmented: Reconstruction) -> SectionRadii:
+def _sections(found: Found, segmented: Reconstruction) -> SectionRadii:
     """As many sections as the drawing has, across the axis, through the depths that agree."""
     assert found.chosen.fit is not None
     count, patch, agreeing = len(segmented.segments.pixel), found.scene.patch, found.soundness.agreeing
@@ -179,108 +153,3 @@ def _without(patch: Patch, radii: SectionRadii, excluded: list[int]) -> Patch:
         place = np.stack(np.divmod(radii.sections.pixels_in(number), width)[::-1], axis=-1)
         drawn[patch.pixel_of(place.astype(np.float64))] = False
     return replace(patch, drawn=drawn)
-
-
-def _reconstruction(segmented: Reconstruction, found: _Found, radii: SectionRadii) -> Reconstruction:
-    settings, chosen, scene = segmented.settings, found.chosen, found.scene
-    assert chosen.fit is not None
-    kind = segmented.drawing.kind
-    solid = solid_of(chosen, kind, found.ends_m, found.axis.direction, settings)
-    middle_m = float(found.axis.along(solid.center_m))
-    length_m = None if found.extent is None else found.extent.length_interval_m
-    intervals = intervals_of(chosen, middle_m, length_m)
-    candidates = candidates_of(found.ranked, chosen, middle_m, settings)
-    margin = candidates[0].score - max((other.score for other in candidates[1:]), default=0.0)
-    doubts = found.doubts + doubts_of(chosen, found.soundness, intervals, radii.circles.state, scene, settings)
-    rivals = [one for one in found.ranked if one is not chosen and is_possible(one, chosen, settings)]
-    low_m, high_m = intervals.diameter_m
-    narrow = high_m - low_m <= settings.certain_interval * (high_m + low_m) / 2
-    certain = narrow and not doubts and not rivals and chosen.shape != "revolution"
-    T_base_camera = segmented.frame.T_base_camera
-    fit = Fit(
-        solid=solid,
-        section_state=radii.circles.state,
-        along_m=radii.heights_m - middle_m,
-        rms_m=_rms(solid.distance(radii.sections.points_of(radii.circles.used))),
-        arc_rad=found.soundness.arc_rad,
-        concave=chosen.surface.side > 0,
-        doubts=doubts,
-        intervals=intervals,
-        evidence=_evidence(segmented, found, scene, (radii, middle_m), certain, margin),
-    )
-    cut = Cut(radii.circles, FittedAxis(found.axis.point_m, found.axis.direction, radii.circles.used))
-    result = replace(segmented, fit=fit, sections=radii.sections, second_cut=cut, candidates=candidates)
-    in_base = solid.moved(T_base_camera)
-    readings = [_reading(found, chosen, in_base, middle_m)]
-    for one in rivals:
-        other = solid_of(one, None, found.ends_m, found.axis.direction, settings)
-        readings.append(_reading(found, one, other.moved(T_base_camera), middle_m))
-    result = replace(result, solid=in_base, readings=tuple(readings))
-    if doubts:
-        return replace(result, tool=NoTool(doubts))
-    place, camera_m = segmented.drawing.contact, T_base_camera[:3, 3]
-    tool = propose_tool(result.readings, camera_m, fit.concave, settings.tools, place, settings.dangerous)
-    return replace(result, tool=tool)
-
-
-def _reading(found: _Found, one: Ranked, solid: Primitive, middle_m: float) -> Reading:
-    """What the object may be, for the choice of a tool; an open end may lie anywhere beyond."""
-    intervals = intervals_of(one, middle_m, None if found.extent is None else found.extent.length_interval_m)
-    length_m = intervals.length_m
-    if length_m is None and found.extent is not None:
-        length_m = (found.extent.length_m, np.inf)
-    return Reading(solid, intervals.diameter_m, length_m, intervals.half_angle_rad)
-
-
-def _evidence(
-    segmented: Reconstruction,
-    found: _Found,
-    scene: Scene,
-    sections: tuple[SectionRadii, float],
-    certain: bool,
-    margin: float,
-) -> Evidence:
-    """`sections` come with the height of the solid's middle."""
-    radii, middle_m = sections
-    fit, surface, noise = found.chosen.fit, found.chosen.surface, scene.patch.noise
-    assert fit is not None
-    depth_m = float(surface.center_m[2]) - surface.side * surface.size_m
-    stated = segmented.frame.noise
-    baseline_m = stated.baseline_m if isinstance(stated, StereoNoise) else None
-    noise_m = float(noise.sigma_m(depth_m))
-    return Evidence(
-        certain=certain,
-        margin=margin,
-        inlier_share=found.soundness.inlier_share,
-        sigma_over_radius=radius_sigma(fit) / surface.size_m,
-        noise_m=noise_m,
-        noise_px=None if baseline_m is None else noise_m * scene.patch.focal_px * baseline_m / depth_m**2,
-        correlation_px=max(noise.correlation_px, fit.likeness.length_px if fit.likeness.alike > 0 else 0.0),
-        noise_stated=noise.stated,
-        depth_weight=fit.likeness.independent_share / fit.sigma**2,
-        outline_weight=sum(share * float((1.0 / outline.sigma_px**2).sum()) for outline, share in fit.outlines),
-        doubt_share=_doubt_share(fit),
-        open_ends=None if found.extent is None else (found.extent.low_open, found.extent.high_open),
-        parts=tuple(_told(part, middle_m) for part in radii.parts),
-        radius_low_m=radii.low_m,
-        radius_high_m=radii.high_m,
-    )
-
-
-def _doubt_share(fit: RayFit) -> float:
-    """Of the variance of the radius at the surface's centre, from 0 to 1."""
-    place = fit.surface.size_place
-    doubt = np.broadcast_to(fit.doubt, fit.covariance.shape)[place, place]
-    return float(np.clip(doubt / max(fit.covariance[place, place], np.finfo(float).tiny), 0.0, 1.0))
-
-
-def _told(part: Part, middle_m: float) -> PartOf:
-    """A part as it is told, from the solid's middle."""
-    low, high = part.radius_interval_m
-    half_angle_rad = float(np.arctan(part.slope)) if part.kind == "cone" else 0.0
-    ends_m = (part.low_m - middle_m, part.high_m - middle_m)
-    return PartOf(part.kind, ends_m, 2 * part.radius_m, (2 * low, 2 * high), half_angle_rad)
-
-
-def _rms(distance_m: Floats) -> float:
-    return float(np.sqrt(np.mean(np.square(distance_m)))) if len(distance_m) else 0.0

@@ -41,7 +41,7 @@ PHOTOMETRY = """
     photometry.drawn photometry.refinement
 """.split()
 JUDGED = """
-    two_objects intervals recognition by_pictures soundness judgement section_radii by_rays calibration
+    two_objects intervals recognition by_pictures soundness judgement section_radii found by_rays calibration
 """.split()
 BY_RAYS = [*FITTED, *TURNED, *PHOTOMETRY, *JUDGED]
 SHOWN = """
