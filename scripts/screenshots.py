@@ -2,6 +2,7 @@
 
 import sys
 from contextlib import closing
+from dataclasses import replace
 from io import BytesIO
 from pathlib import Path
 from tempfile import TemporaryDirectory
@@ -12,6 +13,7 @@ import numpy as np
 from playwright.sync_api import Page, sync_playwright
 
 from app.console import Console
+from app.deciding.settings import DecisionSettings
 from app.drawing_text import parse_area, parse_axis
 from app.record.store import Record
 from rotrecon.drawing import Drawing
@@ -27,6 +29,7 @@ from tests.recordings import DATA
 
 PICTURES = Path(__file__).parents[1] / "docs" / "pictures"
 AREA, AXIS = "270,50 380,232", "325,75 325,222"
+DECIDING = replace(SLOW_PAGE, arm_s=DecisionSettings().arm_s)
 CROP = np.s_[20:260, 180:470]
 
 
@@ -39,7 +42,7 @@ def main() -> None:
     write_figures(frame)
     with TemporaryDirectory() as folder, closing(Record.open(Path(folder))) as record:
         console = Console(
-            frame, capture.name, Settings(), port=0, notes=capture.notes, record=record, deciding=SLOW_PAGE
+            frame, capture.name, Settings(), port=0, notes=capture.notes, record=record, deciding=DECIDING
         )
         console.start()
         try:
@@ -75,7 +78,7 @@ def write_console(console: Console) -> None:
         save(page, "armed.jpg")
         hold(operator, "confirmed")
         page.get_by_role("tab", name="History").click()
-        page.get_by_text("confirmed").last.wait_for()
+        page.get_by_test_id("history").locator("[data-kind=confirmed]").wait_for()
         operator.frames(10)
         save(page, "history.jpg")
 
