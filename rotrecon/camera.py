@@ -40,13 +40,14 @@ class PinholeCamera:
     def cloud(self, depth_m: ArrayLike) -> Cloud:
         """Organised cloud (height, width, 3), float32, of a depth map (height, width); NaN where it is not valid."""
         depth = np.asarray(depth_m, dtype=np.float32)
-        depth = np.where(np.isfinite(depth) & (depth > 0), depth, np.float32(np.nan))
         u = ((np.arange(self.width) - self._principal[0]) / self._focal[0]).astype(np.float32)
         v = ((np.arange(self.height) - self._principal[1]) / self._focal[1]).astype(np.float32)
         points = np.empty((*depth.shape, 3), dtype=np.float32)
-        np.multiply(u, depth, out=points[..., 0])
-        np.multiply(v[:, None], depth, out=points[..., 1])
-        points[..., 2] = depth
+        z = points[..., 2]
+        z[...] = depth
+        z[~((z > 0) & (z < np.inf))] = np.nan
+        np.multiply(u, z, out=points[..., 0])
+        np.multiply(v[:, None], z, out=points[..., 1])
         return points
 
     @property

@@ -150,3 +150,19 @@ def test_noise_shrinks_with_more_views_and_no_further_than_the_shared_picture_le
     shared, own = rng.standard_normal(200_000), rng.standard_normal((2, 200_000))
     errors = 0.2 * (shared + own) / np.sqrt(2)
     assert errors.mean(axis=0).std() == pytest.approx(alike, rel=0.01)
+
+
+@pytest.mark.parametrize("box", [whole(CAMERA), (10, 5, 40, 30)])
+def test_pictures_of_a_pair_that_is_rectified_already_are_cut_as_they_would_be_warped(monkeypatch, box):
+    rng = np.random.default_rng(5)
+    views = [
+        View(rng.integers(0, 255, (CAMERA.height, CAMERA.width, 3), np.uint8), CAMERA, at(x, 0.0, 0.0))
+        for x in (0.0, 0.1)
+    ]
+    canvas = canvas_over(rectify(*views), box, 1.0, (0.2, 4.0))
+    cut = canvas.reference_picture(), canvas.other_picture()
+    monkeypatch.setattr("rotrecon.stereo.canvas._shift", lambda H: None)
+    warped = canvas.reference_picture(), canvas.other_picture()
+    assert cut[0].any()
+    for one, other in zip(cut, warped, strict=True):
+        np.testing.assert_array_equal(one, other)

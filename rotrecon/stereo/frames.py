@@ -4,6 +4,7 @@ import cv2
 import numpy as np
 
 from rotrecon.arrays import Bools, Cloud
+from rotrecon.camera import PinholeCamera
 from rotrecon.drawing import AreaOfInterest, area_mask, check_area
 from rotrecon.frame import Frame, FrameUnavailable, StereoEvidence, StereoNoise
 from rotrecon.stereo.canvas import Box, Canvas, canvas_over, whole
@@ -104,16 +105,9 @@ def _moved(pair: Pair, inside: Bools) -> str | None:
 def _frame(prepared: Prepared, box: Box, inside: Bools, scale: float, window_px: int) -> Frame:
     reference = prepared.views[0]
     canvases = [canvas_over(pair.rectification, box, scale, range_in(pair, box)) for pair in prepared.pairs]
-    matched = [match(canvas, window_px) for canvas in canvases]
-    found = [inverse_depths(canvas, one.disparity_px, box) for canvas, one in zip(canvases, matched, strict=True)]
-    sigmas = [
-        (USUAL_SIGMA_PX if one.sigma_px is None else one.sigma_px) / canvas.disparity_of_inverse_depth
-        for canvas, one in zip(canvases, matched, strict=True)
-    ]
-    fused = fuse(found, sigmas)
-    depth: Cloud = np.full((reference.camera.height, reference.camera.width), np.nan, dtype=np.float32)
-    left, top, right, bottom = box
-    depth[top:bottom, left:right] = 1 / fused
+    found, sigmas = zip(*(_inverse_depths(canvas, box, window_px) for canvas in canvases), strict=True)
+    depth = _depth(fuse(found, sigmas), box, reference.camera)
+    del found
     return Frame(
         image=reference.image,
         points_m=reference.camera.cloud(depth),
@@ -124,6 +118,21 @@ def _frame(prepared: Prepared, box: Box, inside: Bools, scale: float, window_px:
         views=prepared.views,
         stereo=_evidence(prepared, canvases[0], window_px, scale, _share(np.isfinite(depth), inside)),
     )
+
+
+def _inverse_depths(canvas: Canvas, box: Box, window_px: int) -> tuple[Cloud, float]:
+    """Inverse depth (h, w), 1/m, in a box by one pair, and its standard deviation."""
+    matched = match(canvas, window_px)
+    sigma_px = USUAL_SIGMA_PX if matched.sigma_px is None else matched.sigma_px
+    return inverse_depths(canvas, matched.disparity_px, box), sigma_px / canvas.disparity_of_inverse_depth
+
+
+def _depth(inverse: Cloud, box: Box, camera: PinholeCamera) -> Cloud:
+    """Depth of the whole picture from that in a box; NaN elsewhere."""
+    left, top, right, bottom = box
+    depth: Cloud = np.full((camera.height, camera.width), np.nan, dtype=np.float32)
+    np.divide(np.float32(1.0), inverse, out=depth[top:bottom, left:right])
+    return depth
 
 
 def _noise(prepared: Prepared, sigma: float) -> StereoNoise:
