@@ -1,5 +1,6 @@
 """A surface moved from a start until the pictures of several cameras agree over it, outlines in them included."""
 
+from collections.abc import Sequence
 from dataclasses import dataclass, replace
 
 import numpy as np
@@ -82,17 +83,22 @@ def climb(start: Surface, free: Bools, sigma: float, scene: Scene, others: tuple
             sought, edges = surface, edges_of(surface, scene, others)
         pixels, by_depth = _pixels(surface, patch, sigma)
         matches = matches_of(surface, patch, pixels, others, most)
-        measurements: list[Measurement] = [*(match.agreement for match in matches), *edges]
-        if not measurements:
+        if not matches and not edges:
             return None
-        weighting = [*(match.weighting for match in matches), *((1.0, 1.0) for _ in edges)]
-        surface = refine(surface, measurements, weighting, loss, free, units, ITERATIONS).surface
+        surface = _agreeing(surface, matches, edges, loss, free, units)
     if edges and matches and textured_share(surface, patch, pixels, matches) < PLAIN:
         matches = tuple(replace(match, sigma=DISTRUST * match.sigma) for match in matches)
-        weighting = [*(match.weighting for match in matches), *((1.0, 1.0) for _ in edges)]
-        measurements = [*(match.agreement for match in matches), *edges]
-        surface = refine(surface, measurements, weighting, tukey, free, units, ITERATIONS).surface
+        surface = _agreeing(surface, matches, edges, tukey, free, units)
     return Climbed(start, surface, free, pixels, by_depth, matches, tuple(edges))
+
+
+def _agreeing(
+    surface: Surface, matches: tuple[Match, ...], edges: Sequence[Edge], loss: Loss, free: Bools, units: Floats
+) -> Surface:
+    """The surface that pictures and outlines agree on best."""
+    measurements: list[Measurement] = [*(match.agreement for match in matches), *edges]
+    weighting = [*(match.weighting for match in matches), *((1.0, 1.0) for _ in edges)]
+    return refine(surface, measurements, weighting, loss, free, units, ITERATIONS).surface
 
 
 def _pixels(surface: Surface, patch: Patch, sigma: float) -> tuple[Bools, float]:
