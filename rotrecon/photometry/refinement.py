@@ -77,7 +77,7 @@ class Refinement:
         if self.textured > TEXTURED or (self.by_depth and self.climbed.by_depth > DEPTH_SHARE):
             return ()
         return (
-            "hardly any texture is seen on the object, so that its size rests on its outline and its shading alone; "
+            "hardly any texture is seen on the object, so that its size rests on its outline; "
             "light it better, or bring the camera nearer",
         )
 
