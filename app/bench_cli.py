@@ -33,7 +33,7 @@ def bench(
         Path | None, typer.Option(metavar="DIR", help="Recorded scenes to measure too, for --accuracy.")
     ] = None,
 ) -> None:
-    """Measure the program itself: speed and size in two minutes, how accurate it is, or the paper's method."""
+    """Measure the program itself: speed and size in some minutes, how accurate it is, or the paper's method."""
     if accuracy is not None:
         from app.bench.accuracy.document import accuracy_document
         from app.bench.accuracy.peers import PeerMissing

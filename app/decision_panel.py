@@ -31,6 +31,8 @@ TICKS_HZ = 10.0
 """Of a button that is held."""
 CONTROL, DECISION, TWO_ACTIONS, NAMING, REFUSING = range(5)
 """Where the parts stand, whenever they are made: the two buttons are made anew for each proposal."""
+CHOOSE = "choose one"
+"""What stands where a class has not been named yet."""
 STEP = 0.1
 """From one control of a part to the next."""
 NOTHING: tuple[str, ...] = ("-",)
@@ -41,7 +43,7 @@ class DecisionPanel:
 
     def __init__(self, client: ClientHandle, tab: GuiTabHandle, post: Callable[[DecisionEvent], None]) -> None:
         self._gui, self._page, self._tab, self._post = client.gui, client.client_id, tab, post
-        self._number = self._shown = 0
+        self._number = self._shown = self._asked_of = 0
         self._two: tuple[GuiButtonHandle, GuiButtonHandle] | None = None
         with tab:
             self._add_control()
@@ -64,10 +66,18 @@ class DecisionPanel:
         recorded = deciding.watched is not None and deciding.watched.held.source == "recorded"
         stale = bool(problems(deciding.watched, deciding.settings, deciding.now))
         set_to(self._again, "visible", holds and recorded and stale and session.newer is None)
-        for part in (self._class, self._name):
-            set_to(part, "visible", holds and case is not None and deciding.veiled)
+        self._show_naming(holds and case is not None and deciding.veiled)
         self._show_two(deciding, case if holds and not deciding.veiled else None)
         self._show_refusing(deciding, case if holds else None)
+
+    def _show_naming(self, asked: bool) -> None:
+        """What it is has to be said anew of each proposal: a class that stands there already would be an answer."""
+        if self._shown != self._asked_of:
+            self._asked_of = self._shown
+            set_to(self._class, "value", CHOOSE)
+        set_to(self._name, "disabled", self._class.value == CHOOSE)
+        for part in (self._class, self._name):
+            set_to(part, "visible", asked)
 
     def _show_control(self, deciding: Deciding) -> None:
         control = deciding.control
@@ -135,14 +145,19 @@ class DecisionPanel:
         self._no = self._button("Keep control", lambda at: HandoverAnswered(at, page, False), orders[4])
 
     def _add_naming(self) -> None:
-        kinds = get_args(Kind)
-        self._class = self._gui.add_dropdown("The object is a", kinds, visible=False, order=NAMING)
-        self._name = self._button(
-            "Name it, and see the measurement",
-            lambda at: ClassNamed(at, self._page, self._shown, self._class.value),
-            NAMING + STEP,
-            None,
-        )
+        kinds: tuple[Kind, ...] = get_args(Kind)
+        self._class = self._gui.add_dropdown("The object is a", (CHOOSE, *kinds), visible=False, order=NAMING)
+
+        def named(at: float) -> ClassNamed | None:
+            said = self._class.value
+            return None if said == CHOOSE else ClassNamed(at, self._page, self._shown, said)
+
+        self._name = self._button("Name it, and see the measurement", named, NAMING + STEP, None)
+
+        async def chosen(_: GuiEvent[Any]) -> None:
+            self._name.disabled = self._class.value == CHOOSE
+
+        self._class.on_update(chosen)
 
     def _add_refusing(self) -> None:
         """Folded away, as it is the rarer way."""
@@ -167,15 +182,16 @@ class DecisionPanel:
     def _button(
         self,
         label: str,
-        event_of: Callable[[float], DecisionEvent],
+        event_of: Callable[[float], DecisionEvent | None],
         order: float,
         color: Any = "gray",
     ) -> GuiButtonHandle:
         button = self._gui.add_button(label, color=color, visible=False, order=order)
 
         async def clicked(event: GuiEvent[Any]) -> None:
-            if event.client_id == self._page:
-                self._post(event_of(seconds()))
+            happened = event_of(seconds())
+            if event.client_id == self._page and happened is not None:
+                self._post(happened)
 
         button.on_click(clicked)
         return button

@@ -5,7 +5,7 @@ from html import escape
 from math import ceil
 
 from app.deciding.states import Armed, Decided, Deciding, Proposed, Rejected, obstacles
-from app.deciding.watchdog import age_s
+from app.deciding.watchdog import age_s, problems
 from app.origins import from_
 from app.session import Session
 from app.wording import from_to
@@ -140,7 +140,7 @@ def _lines(session: Session) -> tuple[str, ...]:
     if case is None or deciding.fault is not None or deciding.veiled:
         return obstacles(deciding)
     if isinstance(case.stage, Decided | Rejected):
-        return ("A changed drawing is another proposal.",)
+        return (*problems(deciding.watched, deciding.settings, deciding.now), "A changed drawing is another proposal.")
     past = () if case.override is None else case.in_the_way
     return (*obstacles(deciding), *past, *_reasons(session))
 
@@ -151,7 +151,7 @@ def _reasons(session: Session) -> tuple[str, ...]:
     match None if result is None else result.tool:
         case ToolProposal(tool=tool, unsure=unsure):
             limits = from_to(tool.diameter_mm, " mm", 0)
-            return (f"It takes {', '.join(in_words(kind) for kind in tool.takes)}, {limits}.", *unsure)
+            return (f"It takes {' or '.join(f'a {in_words(kind)}' for kind in tool.takes)} of {limits}.", *unsure)
         case NoTool(reasons=reasons):
             return reasons
         case _:

@@ -70,9 +70,14 @@ END = "The tool is confirmed, and the robot may ask for it now. That was the tou
 
 
 def ticked(page: PageState, session: Session, number: int) -> PageState:
-    """The page with the stations ticked off that were reached, in their order; what was ticked stays so."""
+    """The page with the stations ticked off that were reached, in their order; what was ticked stays so.
+
+    The tour ends with what it has led to.
+    """
     if page.tour is None:
         return page
+    if page.tour == len(STATIONS) and not isinstance(_stage(session), Decided):
+        return replace(page, tour=None)
     count = page.tour
     while count < len(STATIONS) and STATIONS[count].reached(session, page, number):
         count += 1

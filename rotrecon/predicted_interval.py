@@ -176,9 +176,10 @@ def _rays(camera: PinholeCamera, box_px: Floats) -> tuple[Floats, float]:
 def _in_the_way(result: Reconstruction, fit: Fit) -> Floats:
     """Points (n, 3), base coordinates, of the frame's cloud that are not the object's and no farther than twice it."""
     frame = result.frame
-    points_m = frame.points_m.reshape(-1, 3)[strange(result, fit)].astype(np.float64)
-    points_m = points_m[points_m[:, 2] < 2 * fit.solid.center_m[2]]
-    return transform(frame.T_base_camera, points_m[:: len(points_m) // MOST_POINTS + 1])
+    cloud = frame.points_m.reshape(-1, 3)
+    with np.errstate(invalid="ignore"):
+        pixels = np.flatnonzero(strange(result, fit, cloud[:, 2] < 2 * fit.solid.center_m[2]))
+    return transform(frame.T_base_camera, cloud[pixels[:: len(pixels) // MOST_POINTS + 1]])
 
 
 def _hidden(in_way_m: Floats, camera: PinholeCamera, box_px: Floats, rays: Floats, depth_m: Floats) -> Bools:

@@ -71,7 +71,7 @@ def test_speed_report_puts_figures_beside_their_targets():
 
 
 def test_every_release_on_a_page_gets_its_latency():
-    durations_s = release_latency(1).durations_s
+    durations_s = release_latency(1, "paper").durations_s
     assert durations_s.shape == (1,)
     assert (durations_s > 0).all()
 

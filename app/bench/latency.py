@@ -17,7 +17,7 @@ from app.deciding.events import ControlTaken
 from app.object_drawing import Pixel
 from app.record.store import Record
 from rotrecon.arrays import Floats
-from rotrecon.settings import Settings
+from rotrecon.settings import Method, Settings
 from rotrecon.simulation.simulate import Simulated, simulate
 
 OBJECT = "leg"
@@ -42,11 +42,11 @@ class Latency:
         return 1000 * float(np.percentile(self.durations_s, percent))
 
 
-def release_latency(releases: int) -> Latency:
-    """Draw an area and then strokes on it, over a web socket; every release measures the object anew."""
+def release_latency(releases: int, method: Method) -> Latency:
+    """Draw an area and then strokes on it, over a web socket; every release measures the object anew by a method."""
     simulated = simulate(OBJECT, 0, CAMERA, STEREO, supersampling=1)
     with TemporaryDirectory() as folder, closing(Record.open(Path(folder))) as record:
-        console = Console(simulated.frame, OBJECT, Settings(), port=0, record=record)
+        console = Console(simulated.frame, OBJECT, Settings(method=method), port=0, record=record)
         console.start()
         try:
             page = WirePage(console.address, 0, simulated.frame)

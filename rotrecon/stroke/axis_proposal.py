@@ -48,7 +48,10 @@ def propose_axis(frame: Frame, area: AreaOfInterest, settings: Settings) -> Obje
     if isinstance(found, FitFailure):
         return found
     if found.mask.sum() < max(FEWEST_PIXELS, LEAST_SHARE * found.patch.inside.sum()):
-        advice = "nothing in the area stands out from what is behind it; draw the axis along the object by hand"
+        advice = (
+            "nothing in the area stands out from what is behind it; draw the area round the object, "
+            "or if it is in it, its axis by hand"
+        )
         return FitFailure(FailureReason.FLAT, advice)
     start, end = _ends(found, *_axis_line(found, frame.camera), frame.camera)
     length_px = float(np.linalg.norm(end - start))

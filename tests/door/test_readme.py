@@ -57,7 +57,7 @@ def confirm(cell: Cell) -> None:
 
 def test_its_curl_lines_fetch_a_confirmed_decision_and_push_a_frame(cell: Cell, tmp_path: Path) -> None:
     write_scene(tmp_path / "newer", SceneRecord("Newer", exact_frame(SOLID)))
-    bodies = {"@newer.zip": zipped(tmp_path / "newer")}
+    bodies = {"@/tmp/newer.zip": zipped(tmp_path / "newer")}
     cell.do(*DRAWN)
     confirm(cell)
     answers = {said[-1].removeprefix(ADDRESS): curl(cell, said, bodies) for said in CURLS}
