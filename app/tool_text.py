@@ -63,6 +63,9 @@ def _margin(value_mm: float) -> str:
     return f"{value_mm:.1f} mm"
 
 
+UNBOUNDED = "The scene states no limits of the arm: whether it gets there is not checked"
+
+
 def place_html(result: Reconstruction | None, tool: Tool | None = None) -> str:
     """A tool at its place: what it would hit, and whether the arm gets there; by default the one that is proposed."""
     grasp = None if result is None else grasp_in(result, tool)
@@ -70,8 +73,12 @@ def place_html(result: Reconstruction | None, tool: Tool | None = None) -> str:
         return '<div class="rr-why" data-testid="place"></div>'
     is_proposed = isinstance(result.tool, ToolProposal) and result.tool.tool == grasp.tool
     unproposed = "" if is_proposed else ", which is not proposed,"
-    checks = [*hit_lines(grasp), *reach_lines(grasp)]
+    limits = result.frame.workspace
+    bounded = limits.reach_m is not None or limits.box_m is not None
+    checks = [*hit_lines(grasp), *(reach_lines(grasp) if bounded else ())]
     rows = "".join(f'<li class="{"rr-good" if good else "rr-bad"}">{escape(text)}</li>' for good, text in checks)
+    if not bounded:
+        rows += f'<li class="rr-dim">{UNBOUNDED}</li>'
     return (
         f'<div class="rr-why" data-testid="place" data-clear="{str(all(good for good, _ in checks)).lower()}">'
         f"<h4 {from_('place')}>{escape(grasp.tool.name)}{unproposed} {place_text(grasp.place)}</h4>"
@@ -129,7 +136,7 @@ def _hits(where: str, free: str, hits: Hits) -> tuple[bool, str]:
 def reach_lines(grasp: Grasp) -> list[tuple[bool, str]]:
     """Whether the arm gets there."""
     if not grasp.unreachable:
-        return [(True, "The arm reaches contact and approach, as far as its limits are known")]
+        return [(True, "The arm reaches contact and approach")]
     return [(False, f"Out of reach: {why}") for why in grasp.unreachable]
 
 
