@@ -39,10 +39,13 @@ def test_what_is_drawn_on_views_is_measured_on_depth_matched_for_it(browser: Bro
                 corners = scene.drawing.area.vertices_px
                 low, high = (tuple(pick(axis) for axis in zip(*corners, strict=True)) for pick in (min, max))
                 operator.drag(low, high)
+
+                def finely() -> bool:
+                    measured = console.session.measured
+                    return measured is not None and not measured.coarse
+
+                operator.until(finely, "the area is matched again and measured")
                 operator.settle()
-                measured = console.session.measured
-                assert measured is not None
-                assert not measured.coarse
                 result = console.session.reconstruction
                 assert result is not None
                 assert result.frame is not coarse
