@@ -75,7 +75,7 @@ def _match(surface: Surface, patch: Patch, grey: Floats, among: Bools, other: Ot
     if len(pixels) < FEWEST_PIXELS:
         return None
     rays = patch.rays[:, pixels]
-    shades = shades_of(outward(surface, rays * surface.trace(rays).depth_m))
+    shades = shades_of(outward(surface, rays * surface.meet(rays)[0]))
     agreement = Agreement(rays, grey[pixels], shades, spline, other.carrier)
     residual = agreement.predict(surface).residual
     sigma = max(robust_scale(residual), LEAST_SIGMA)
