@@ -5,6 +5,7 @@ from dataclasses import dataclass, replace
 import numpy as np
 
 from rotrecon.arrays import Bools, Floats
+from rotrecon.rays.ball import Ball
 from rotrecon.rays.fitting import Outline, tukey
 from rotrecon.rays.lateral import Lateral
 from rotrecon.rays.patch import Patch
@@ -26,6 +27,8 @@ CHANCE, SUSPICION = 3.5, 1.0
 """Standard deviations by which inner depths may be explained worse, and by which a size may differ from theirs."""
 CORRECTION_DOUBT = 0.25
 """Standard deviation of what one way to a size changes, over the change: neither way is without error."""
+BALL_DOUBT = 0.5
+"""The same of a ball, whose panels and shadows run along its outline (measured on simulated stereo)."""
 WINDOWS_AT_MOST = 1.3
 """Times as rough as the inner ones, at most, windows alone make all depths (measured on simulated stereo)."""
 DECISIVE = 1.03
@@ -106,8 +109,8 @@ def _as_large(fit: RayFit, inner: RayFit) -> bool:
 
 def doubting(fit: RayFit, other: RayFit) -> RayFit:
     """A fit that is less sure of its size by a share of its difference from another, which believes other things."""
-    apart = np.zeros(len(fit.free))
-    apart[fit.surface.size_place :] = CORRECTION_DOUBT * (_size(fit.surface) - _size(other.surface))
+    apart, share = np.zeros(len(fit.free)), BALL_DOUBT if isinstance(fit.surface, Ball) else CORRECTION_DOUBT
+    apart[fit.surface.size_place :] = share * (_size(fit.surface) - _size(other.surface))
     return replace(fit, doubt=fit.doubt + np.outer(apart, apart))
 
 

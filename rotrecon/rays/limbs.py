@@ -29,8 +29,8 @@ FEWEST_LIMBS = 12
 """Fewer limb points are no outline."""
 REACH_SHARE, LEAST_REACH_PX, MOST_REACH_PX = 0.25, 4.0, 10.0
 """Share of the half width within which an edge is looked for, px at least and at most."""
-CIRCLE_POINTS = 180
-"""Limb points of a ball."""
+CIRCLE_ARCS, ARC_POINTS = 4, 45
+"""Arcs of a ball's outline, each seen or not by itself, and the limb points of each."""
 
 
 @dataclass(frozen=True, eq=False)
@@ -42,7 +42,7 @@ class Limbs:
     normal_px: Floats
     """(n, 2) unit, away from the object."""
     side: Indices
-    """(n,) 0 or 1: to the left or the right along the axis; 0 for all of a ball."""
+    """(n,) 0 or 1: to the left or the right along the axis; of a ball the number of the arc."""
     along: Floats
     """(n,) height along the axis, m; of a ball the angle round the outline, rad."""
     depth_m: Floats
@@ -101,12 +101,13 @@ def _of_ball(ball: Ball) -> tuple[Floats, Floats, Indices, Floats]:
     distance = float(np.linalg.norm(ball.center_m))
     toward = ball.center_m / distance
     sine = min(ball.radius_m / distance, 1.0)
-    angle = np.linspace(0, 2 * np.pi, CIRCLE_POINTS, endpoint=False)
+    angle = np.linspace(0, 2 * np.pi, CIRCLE_ARCS * ARC_POINTS, endpoint=False)
     across = np.cross(toward, np.array([0.0, 1.0, 0.0]))
     across /= np.linalg.norm(across)
     round_about = np.cos(angle)[:, None] * across + np.sin(angle)[:, None] * np.cross(toward, across)
     normals = np.sqrt(1 - sine**2) * round_about - sine * toward
-    return ball.center_m + ball.radius_m * normals, normals, np.zeros(CIRCLE_POINTS, dtype=np.int32), angle
+    arc = np.repeat(np.arange(CIRCLE_ARCS, dtype=np.int32), ARC_POINTS)
+    return ball.center_m + ball.radius_m * normals, normals, arc, angle
 
 
 def mask_outline(
@@ -149,7 +150,7 @@ class SeenOutline:
     edges: Outline | None
     """None where no side of it can be trusted."""
     sides: int
-    """How many sides can."""
+    """How many sides can, or arcs of a ball's."""
 
     @property
     def rank(self) -> tuple[int, int]:

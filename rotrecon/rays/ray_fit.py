@@ -29,7 +29,7 @@ HASTY_PIXELS = 2500
 """Enough for a first round, evenly; the next takes all that tell something new."""
 REPEATING = 0.25
 """Likeness of errors above which neighbouring pixels repeat each other."""
-TAMED_PX = 0.3
+TAMED_PX = 0.1
 """Distance from the outline within which depths count as if they were that far inside, where errors are alike."""
 SETTLED_SIZE = 1e-4
 """A round that changes the radius by less than this share is the last."""

@@ -6,7 +6,6 @@ from typing import Literal
 
 import numpy as np
 
-from rotrecon.rays.ball import Ball
 from rotrecon.rays.coarse_fit import follow
 from rotrecon.rays.fitting import TUKEY, Outline, tukey
 from rotrecon.rays.guard import Outlines, Task, doubting, settle
@@ -73,18 +72,15 @@ def rank(scene: Scene, held: Held) -> tuple[Ranked, ...]:
 def _following(
     scene: Scene, held: Held, found: dict[Shape, tuple[float, Surface]]
 ) -> tuple[Outlines, dict[Shape, tuple[float, Surface]]]:
-    """The outline in the picture, and the surfaces with their costs once they have followed it; none for a ball.
+    """The outline in the picture, and the surfaces with their costs once they have followed it.
 
     From a surface that has followed one side of it, the other may be seen too.
     """
     seen = SeenOutline(None, 0)
     for round_ in range(OUTLINE_ROUNDS):
         order = [surface for _, surface in sorted(found.values(), key=itemgetter(0))]
-        if isinstance(order[0], Ball):
-            # the edge of a ball, everywhere as bright as what is behind it or brighter, is seen too far inside
-            return (), found
         for surface in (*order, *_tapered(order[0])) if round_ == 0 else order[:1]:
-            if seen.sides == 2:
+            if seen.sides >= 2:
                 break
             other = seen_outline(surface, scene.patch, scene.segments, scene.length_m)
             seen = max(seen, other, key=lambda one: one.rank)
