@@ -72,7 +72,8 @@ class Depths:
 
     def chosen(self, index: Indices | Bools) -> "Depths":
         """Some of the rays."""
-        return replace(self, rays=self.rays[:, index], steps=self.steps[index])
+        rays = np.ascontiguousarray(self.rays[:, index])
+        return replace(self, rays=rays, steps=self.steps[index])
 
 
 @dataclass(frozen=True, eq=False)
@@ -152,7 +153,8 @@ class Outline:
 
     def chosen(self, index: Indices | Bools) -> "Outline":
         """Some of the edges."""
-        return replace(self, rays=self.rays[:, index], sigma_px=self.sigma_px[index])
+        rays = np.ascontiguousarray(self.rays[:, index])
+        return replace(self, rays=rays, sigma_px=self.sigma_px[index])
 
 
 Loss = Callable[[Floats], tuple[Floats, Floats]]

@@ -6,7 +6,8 @@ from typing import Literal
 import numpy as np
 
 from rotrecon.arrays import Bools, Floats, freeze
-from rotrecon.rays.traces import FLANK, GRAZING_PX, Range, Rays, Roots, Tangency, Trace, limited
+from rotrecon.rays.lateral_rays import crossings, gradient, nearest
+from rotrecon.rays.traces import GRAZING_PX, Range, Rays, Tangency, Trace, limited
 
 
 @dataclass(frozen=True, eq=False)
@@ -51,84 +52,50 @@ class Lateral:
         unit = [1.0, 1.0, 1.0 / length_m, 1.0 / length_m, 1.0]
         return np.array([*unit, 1.0 / length_m] if self.tapers else unit)
 
-    def _quadratic(self, rays: Rays) -> tuple[Floats, Floats, Roots]:
-        """Directions (3, N) and the camera (3,) in the surface's own coordinates, and the quadratics."""
-        origin = -self.turn @ self.center_m
-        radius = self.radius_m + self.slope * origin[2]
-        halved = origin[0] * self.turn[0] + origin[1] * self.turn[1] - radius * self.slope * self.turn[2]
-        turned = np.concatenate([self.turn, halved[None]]) @ rays
-        x, y, h, b = turned
-        a = x * x
-        a += y * y
-        if self.slope != 0:
-            growth = self.slope * h
-            a -= growth * growth
-        # a ray along a cone's flank meets it at infinity, one steeper than that from the other side
-        a[np.abs(a) < FLANK] = FLANK
-        return turned[:3], origin, Roots(a, b, float(origin[0] ** 2 + origin[1] ** 2 - radius**2))
-
     def meet(self, rays: Rays) -> tuple[Floats, Bools]:
         """Depth (N,) and hits (N,) of rays, as `trace` has them."""
-        _, _, depth, _, hit = self._met(rays)
+        _, depth, _, hit = self._crossings(rays)
         return depth, hit
 
     def trace(self, rays: Rays) -> Trace:
         """Where rays meet it; parameters: shift across, shift toward the camera, turn by each, radius, slope."""
-        turned, origin, depth, root, hit = self._met(rays)
-        return Trace(self._gradient(*self._point(turned, origin, depth)), -self.side / root, depth, hit)
+        points, depth, root, hit = self._crossings(rays)
+        return Trace(self._gradient(points), -self.side / root, depth, hit)
 
-    def _met(self, rays: Rays) -> tuple[Floats, Floats, Floats, Floats, Bools]:
-        """Directions and origin in the surface's own coordinates; depths, roots and hits."""
-        turned, origin, roots = self._quadratic(rays)
-        grazing = np.abs(roots.b)
-        grazing *= 2 * GRAZING_PX / self.focal_px
-        grazing *= np.abs(self._radius_at(origin[2] + roots.nearest_m * turned[2])) if self.slope else self.radius_m
-        return turned, origin, *roots.depth(self.side, grazing)
+    def _crossings(self, rays: Rays) -> tuple[Floats, Floats, Floats, Bools]:
+        rays, grazing = np.ascontiguousarray(rays), 2 * GRAZING_PX / self.focal_px
+        return crossings(rays, self.turn, self._origin, self.radius_m, self.slope, self.side, grazing)
 
     def gap(self, rays: Rays) -> tuple[Floats, Floats]:
         """How far rays pass outside it, and the depth of their nearest points, both (N,); as `tangency` has them."""
-        (x, y, _), radius, depth = self._nearest_to(rays)
-        return (x * x + y * y - radius * radius) / (2 * radius), depth
+        points, squared, depth = self._nearest(rays)
+        radius = self._radius_at(points[2])
+        return (squared - radius * radius) / (2 * radius), depth
 
     def tangency(self, rays: Rays) -> Tangency:
         """How far rays pass outside it."""
-        (x, y, h), radius, depth = self._nearest_to(rays)
-        gap = (x * x + y * y - radius * radius) / (2 * radius)
-        return Tangency(self._gradient(x, y, h), 1.0 / radius, gap, depth)
+        points, squared, depth = self._nearest(rays)
+        radius = self._radius_at(points[2])
+        return Tangency(self._gradient(points), 1.0 / radius, (squared - radius * radius) / (2 * radius), depth)
 
     def off_middle(self, rays: Rays) -> Floats:
         """How far beside the axis rays (3, N) pass, over the radius there: 1 at the outline."""
-        (x, y, _), radius, _ = self._nearest_to(rays)
-        return np.sqrt(x * x + y * y) / np.maximum(radius, 1e-9)
+        points, squared, _ = self._nearest(rays)
+        return np.sqrt(squared) / np.maximum(self._radius_at(points[2]), 1e-9)
 
-    def _nearest_to(self, rays: Rays) -> tuple[Floats, Floats, Floats]:
-        """Points (3, N) of rays nearest to the surface in its own coordinates, its radius there, and their depth."""
-        turned, origin, roots = self._quadratic(rays)
-        depth = roots.nearest_m
-        points = self._point(turned, origin, depth)
-        return points, self._radius_at(points[2]), depth
+    def _nearest(self, rays: Rays) -> tuple[Floats, Floats, Floats]:
+        return nearest(np.ascontiguousarray(rays), self.turn, self._origin, self.radius_m, self.slope)
 
-    def _point(self, turned: Floats, origin: Floats, depth: Floats) -> Floats:
-        """Points (3, N) of rays in the surface's own coordinates."""
-        points = turned * depth
-        points += origin[:, None]
-        return points
+    @property
+    def _origin(self) -> Floats:
+        """The camera (3,) in the surface's own coordinates."""
+        return -self.turn @ self.center_m
 
     def _radius_at(self, h: Floats) -> Floats:
         return self.radius_m + self.slope * h
 
-    def _gradient(self, x: Floats, y: Floats, h: Floats) -> Floats:
-        """Derivatives (k, N) of (x^2 + y^2 - radius^2) / 2 at points of the surface's own coordinates."""
-        radius = self._radius_at(h) if self.slope else self.radius_m
-        lever = h + self.slope * radius if self.slope else h
-        gradient = np.empty((6 if self.tapers else 5, len(x)))
-        np.negative(x, out=gradient[0])
-        np.negative(y, out=gradient[1])
-        np.multiply(gradient[:2], lever, out=gradient[2:4])
-        gradient[4] = -radius
-        if self.tapers:
-            np.multiply(gradient[4], h, out=gradient[5])
-        return gradient
+    def _gradient(self, points: Floats) -> Floats:
+        return gradient(points, self.radius_m, self.slope, self.tapers)
 
     def heights(self, points_m: Floats) -> Floats:
         """Heights (N,) along the axis, from the centre, of points (N, 3)."""

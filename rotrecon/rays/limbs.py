@@ -140,7 +140,8 @@ def mask_outline(
 
 def outline_at(point_px: Floats, sigma_px: Floats, patch: Patch) -> Outline:
     """An outline through points (n, 2) of the picture."""
-    return Outline(patch.camera.unproject(point_px, np.ones(len(point_px))).T, sigma_px, patch.focal_px)
+    rays = np.ascontiguousarray(patch.camera.unproject(point_px, np.ones(len(point_px))).T)
+    return Outline(rays, sigma_px, patch.focal_px)
 
 
 @dataclass(frozen=True, eq=False)

@@ -219,7 +219,7 @@ def _noise_of(patch: Patch, pixels: Indices, residual: Floats) -> tuple[float, L
 
 def depths_of(patch: Patch, pixels: Indices) -> Depths:
     """The depths of some pixels."""
-    return Depths(patch.rays[:, pixels], patch.noise.steps(patch.depth_m[pixels]), patch.noise)
+    return Depths(patch.rays.take(pixels, axis=1), patch.noise.steps(patch.depth_m[pixels]), patch.noise)
 
 
 def _measured(patch: Patch, pixels: Indices, surface: Surface, sight: Sight) -> Depths | MatchedDepths:
@@ -231,7 +231,9 @@ def _measured(patch: Patch, pixels: Indices, surface: Surface, sight: Sight) -> 
     position[place] = np.arange(len(place), dtype=np.int32)
     pixels_there = position[pixels]
     steps = patch.noise.steps(patch.depth_m[pixels])
-    return MatchedDepths(patch.rays[:, place], place, patch.shape, sight.window_px, pixels_there, steps, patch.noise)
+    return MatchedDepths(
+        patch.rays.take(place, axis=1), place, patch.shape, sight.window_px, pixels_there, steps, patch.noise
+    )
 
 
 def near(surface: Surface, patch: Patch, among: Bools, sight: Sight) -> Indices:
@@ -239,7 +241,7 @@ def near(surface: Surface, patch: Patch, among: Bools, sight: Sight) -> Indices:
     pixels = np.flatnonzero(among).astype(np.int32)
     if surface.side > 0:
         return pixels
-    rays = patch.rays[:, pixels]
+    rays = patch.rays.take(pixels, axis=1)
     if sight.guard < 1:
         return pixels[surface.off_middle(rays) < sight.guard]
     gap_m, depth_m = surface.gap(rays)

@@ -5,6 +5,7 @@ from dataclasses import dataclass
 import numpy as np
 
 from rotrecon.arrays import Bools, Floats
+from rotrecon.compiled import FLOAT, compiled
 
 GRAZING_PX = 0.02
 """Rays that pass nearer to an outline go on along their tangent: at the outline itself the depth grows with the root of
@@ -58,32 +59,18 @@ class Tangency(Derivatives):
     """(N,) along z, of the point of the ray that is nearest to the surface."""
 
 
-@dataclass(frozen=True, eq=False)
-class Roots:
-    """The quadratic a z^2 + 2 b z + c of every ray."""
+@compiled(FLOAT, FLOAT, FLOAT, FLOAT, FLOAT)
+def root_of(a: float, b: float, c: float, side: float, grazing_disc: float) -> tuple[float, float, bool]:
+    """The near (-1) or far (+1) root z of a z^2 + 2 b z + c, the root of its discriminant, and whether it has one.
 
-    a: Floats
-    b: Floats
-    c: float
-
-    @property
-    def nearest_m(self) -> Floats:
-        """Depth of the point of the ray nearest to the surface."""
-        return -self.b / self.a
-
-    def depth(self, side: int, grazing_disc: Floats) -> tuple[Floats, Floats, Bools]:
-        """Depth of the near (-1) or far (+1) root, the root of the discriminant, at least grazing, and what hits."""
-        disc = self.b * self.b
-        disc -= self.a * self.c
-        np.maximum(grazing_disc, SMALLEST, out=grazing_disc)
-        root = np.sqrt(np.maximum(disc, grazing_disc))
-        reach = side * root
-        # below the grazing value the root goes on along its tangent, so that a ray that misses still pulls
-        low = np.flatnonzero(disc < grazing_disc)
-        reach[low] += side * (disc[low] - grazing_disc[low]) / (2 * root[low])
-        reach -= self.b
-        reach /= self.a
-        return reach, root, disc > 0
+    Below the grazing value of the discriminant z goes on along its tangent, so that a ray that misses still pulls.
+    """
+    disc, least = b * b - a * c, max(grazing_disc, SMALLEST)
+    root = np.sqrt(max(disc, least))
+    reach = side * root
+    if disc < least:
+        reach += side * (disc - least) / (2 * root)
+    return (reach - b) / a, root, disc > 0
 
 
 def limited(value: float, limits: Range | None) -> float:
