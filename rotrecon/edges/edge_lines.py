@@ -7,7 +7,8 @@ import cv2
 import numpy as np
 from numpy.typing import NDArray
 
-from rotrecon.arrays import Floats, Indices, freeze
+from rotrecon.arrays import Floats, freeze
+from rotrecon.compiled import MATRIX, VECTOR, compiled
 
 STEP_PX = 0.5
 """Distance of the samples along a normal, and of the lines tried; each is then moved onto its own edges."""
@@ -134,9 +135,8 @@ def find_line(picture: NDArray[np.float32], stretch: Stretch, reach_px: float) -
     shapes = stretch.shapes()
     shift, bend = _moves(stretch, reach_px)
     rows = np.linspace(0, len(stretch) - 1, min(len(stretch), ROWS)).round().astype(np.intp)
-    places = shift[:, None, None] + bend @ shapes[rows, 1:].T
-    sample = np.rint((places - votes.across_px[0]) / STEP_PX).astype(np.int32).clip(0, len(votes.across_px) - 1)
-    support = _support(votes.share[rows], sample)
+    places = (bend @ shapes[rows, 1:].T - votes.across_px[0]) / STEP_PX
+    support = _support(votes.share[rows], shift / STEP_PX, places)
     best = support.max(axis=1)
     around = np.concatenate([[0.0], best, [0.0]])
     tops = (best >= OUTER_SHARE * best.max()) & (best >= around[:-2]) & (best >= around[2:])
@@ -144,7 +144,7 @@ def find_line(picture: NDArray[np.float32], stretch: Stretch, reach_px: float) -
     start = shapes @ np.array([shift[chosen], *bend[support[chosen].argmax()]])
     offset = _onto_edges(votes, shapes, start)
     others = np.where(np.abs(votes.across_px - offset[:, None]) < SAME_LINE_PX, 0.0, votes.share)
-    return Line(offset, float(best[chosen]), float(_support(others[rows], sample).max()))
+    return Line(offset, float(best[chosen]), float(_support(others[rows], shift / STEP_PX, places).max()))
 
 
 def _votes(picture: NDArray[np.float32], stretch: Stretch, reach_px: float) -> _Votes:
@@ -165,7 +165,8 @@ def _votes(picture: NDArray[np.float32], stretch: Stretch, reach_px: float) -> _
     curved = np.maximum(2 * here - before - after, 1e-12)
     steepest = across[1:-1] + STEP_PX * ((after - before) / (2 * curved)).clip(-0.5, 0.5)
     strongest = np.where(edge, here, LEAST_GRADIENT).max(axis=1, keepdims=True)
-    return _Votes(across[1:-1], steepest, np.where(edge, here / strongest, 0.0))
+    share = np.where(edge, here / strongest, 0.0).astype(np.float64)
+    return _Votes(across[1:-1], steepest, share)
 
 
 def _moves(stretch: Stretch, reach_px: float) -> tuple[Floats, Floats]:
@@ -180,18 +181,29 @@ def _moves(stretch: Stretch, reach_px: float) -> tuple[Floats, Floats]:
     return np.arange(-reach_px, reach_px + STEP_PX / 2, STEP_PX), bend
 
 
-def _support(share: Floats, sample: Indices) -> Floats:
-    """Support (A, B) of lines that pass R normals at the samples (A, B, R); `share` (R, T) says where the edges are."""
+def _support(share: Floats, shift: Floats, places: Floats) -> Floats:
+    """Support (A, B) of lines at places (B, R), in steps, moved by shifts (A,); edges are where `share` (R, T) says."""
     near = share.copy()
     for step in range(1, round(2 * NEAR_PX / STEP_PX) + 1):
         faded = share * np.exp(-0.5 * (step * STEP_PX / NEAR_PX) ** 2)
         np.maximum(near[:, step:], faded[:, :-step], out=near[:, step:])
         np.maximum(near[:, :-step], faded[:, step:], out=near[:, :-step])
     near[:, [0, -1]] = 0.0
-    total = np.zeros(sample.shape[:2])
-    for row, strength in enumerate(near):
-        total += strength.take(sample[..., row])
-    return total / len(near)
+    return _counted(near, shift, places)
+
+
+@compiled(MATRIX, VECTOR, MATRIX)
+def _counted(near: Floats, shift: Floats, places: Floats) -> Floats:
+    """Mean (A, B) over rows R of what `near` (R, T) holds at the places (B, R) nearest to shifted lines."""
+    last, rows = near.shape[1] - 1, near.shape[0]
+    mean = np.zeros((len(shift), len(places)))
+    for a in range(len(shift)):
+        for b in range(len(places)):
+            total = 0.0
+            for row in range(rows):
+                total += near[row, min(max(int(np.rint(shift[a] + places[b, row])), 0), last)]
+            mean[a, b] = total / rows
+    return mean
 
 
 def _onto_edges(votes: _Votes, shapes: Floats, start_px: Floats) -> Floats:

@@ -6,6 +6,7 @@ import cv2
 import numpy as np
 
 from rotrecon.arrays import Floats
+from rotrecon.compiled import MATRIX, compiled
 
 LAGS = (1, 2, 4, 7, 12)
 """Distances, px, at which residuals are compared."""
@@ -37,28 +38,38 @@ class Likeness:
         half = int(np.ceil(2.5 * self.length_px))
         lag = np.arange(-half, half + 1)
         kernel = np.exp(-np.square(lag / self.length_px))
-        together = cv2.sepFilter2D(image, -1, kernel, kernel, borderType=cv2.BORDER_CONSTANT)
-        return self.alike * np.asarray(together) + (1.0 - self.alike) * image
+        together = cv2.sepFilter2D(image.astype(np.float32), -1, kernel, kernel, borderType=cv2.BORDER_CONSTANT)
+        return self.alike * np.asarray(together, dtype=np.float64) + (1.0 - self.alike) * image
 
 
 def likeness_of(residual: Floats) -> Likeness:
     """The likeness of residuals (h, w), NaN where there is none."""
     known = np.isfinite(residual)
-    value = np.where(known, residual, 0.0)
-    variance = float(np.vdot(value, value)) / max(int(np.count_nonzero(known)), 1)
-    lags: list[float] = []
-    alike: list[float] = []
-    chance: list[float] = []
-    for lag in LAGS:
-        total = pairs = 0.0
-        for first, second in ((np.s_[lag:], np.s_[:-lag]), (np.s_[:, lag:], np.s_[:, :-lag])):
-            total += float(np.einsum("ij,ij->", value[first], value[second]))
-            pairs += np.count_nonzero(known[first] & known[second])
-        if pairs >= FEWEST_PAIRS and variance > 0:
-            lags.append(lag)
-            alike.append(total / pairs / variance)
-            chance.append(1.0 / pairs)
-    return _fitted(np.array(lags), np.array(alike), np.array(chance))
+    variance = float(np.mean(np.square(residual[known]))) if known.any() else 0.0
+    total, pairs = _products(residual)
+    told = (pairs >= FEWEST_PAIRS) & (variance > 0)
+    lags, pairs = np.array(LAGS, dtype=np.float64)[told], pairs[told]
+    return _fitted(lags, total[told] / pairs / variance, 1.0 / pairs)
+
+
+@compiled(MATRIX)
+def _products(residual: Floats) -> tuple[Floats, Floats]:
+    """Sums of the products of residuals (h, w) each lag apart, down and to the right, and how many they are."""
+    height, width = residual.shape
+    total, pairs = np.zeros(len(LAGS)), np.zeros(len(LAGS))
+    for row in range(height):
+        for column in range(width):
+            here = residual[row, column]
+            if np.isnan(here):
+                continue
+            for number, lag in enumerate(LAGS):
+                if row + lag < height and not np.isnan(residual[row + lag, column]):
+                    total[number] += here * residual[row + lag, column]
+                    pairs[number] += 1
+                if column + lag < width and not np.isnan(residual[row, column + lag]):
+                    total[number] += here * residual[row, column + lag]
+                    pairs[number] += 1
+    return total, pairs
 
 
 def _fitted(lags: Floats, alike: Floats, chance: Floats) -> Likeness:

@@ -8,6 +8,7 @@ import cv2
 import numpy as np
 
 from rotrecon.arrays import Bools, Floats, Indices, freeze
+from rotrecon.compiled import VECTOR, compiled
 from rotrecon.noise import RayNoise
 from rotrecon.rays.surfaces import Surface
 from rotrecon.rays.traces import Derivatives, Rays
@@ -161,16 +162,24 @@ Loss = Callable[[Floats], tuple[Floats, Floats]]
 """Cost (N,) and weight (N,) of residuals (N,) in sigmas."""
 
 
+@compiled(VECTOR)
 def cauchy(residual: Floats) -> tuple[Floats, Floats]:
     """Heavy-tailed: no start is too far."""
-    squared = np.square(residual / CAUCHY)
-    return CAUCHY**2 / 2 * np.log1p(squared), 1.0 / (1.0 + squared)
+    cost, weight = np.empty(len(residual)), np.empty(len(residual))
+    for i in range(len(residual)):
+        squared = (residual[i] / CAUCHY) ** 2
+        cost[i], weight[i] = CAUCHY**2 / 2 * np.log1p(squared), 1.0 / (1.0 + squared)
+    return cost, weight
 
 
+@compiled(VECTOR)
 def tukey(residual: Floats) -> tuple[Floats, Floats]:
     """Redescending: what is far off has no say."""
-    inside = np.maximum(1.0 - np.square(residual / TUKEY), 0.0)
-    return TUKEY**2 / 6 * (1.0 - inside**3), inside**2
+    cost, weight = np.empty(len(residual)), np.empty(len(residual))
+    for i in range(len(residual)):
+        inside = max(1.0 - (residual[i] / TUKEY) ** 2, 0.0)
+        cost[i], weight[i] = TUKEY**2 / 6 * (1.0 - inside**3), inside**2
+    return cost, weight
 
 
 @dataclass(frozen=True, eq=False)
@@ -247,15 +256,20 @@ def _normal_equations(
     return cost, gradient * units, information * np.outer(units, units)
 
 
+@compiled(VECTOR)
 def robust_scale(residual: Floats) -> float:
     """Sigma of residuals (N,), most of which are noise: the median magnitude, then the spread of what it keeps.
 
     Of the residuals within 3 sigma a normal distribution keeps 98.7 % of its standard deviation.
     """
-    sigma = TO_SIGMA * float(np.median(np.abs(residual)))
+    sigma = TO_SIGMA * np.median(np.abs(residual))
     for _ in range(3):
-        kept = residual[np.abs(residual) < 3 * sigma]
-        if len(kept) == 0:
+        total, count = 0.0, 0
+        for value in residual:
+            if abs(value) < 3 * sigma:
+                total += value * value
+                count += 1
+        if count == 0:
             break
-        sigma = float(np.sqrt(np.mean(kept**2))) / 0.9866
+        sigma = np.sqrt(total / count) / 0.9866
     return sigma

@@ -78,3 +78,15 @@ def gradient(points: Floats, radius: float, slope: float, tapers: bool) -> Float
         if tapers:
             found[5, i] = -there * h
     return found
+
+
+@compiled(MATRIX, FLOAT, FLOAT)
+def tilted(turn: Floats, aside: float, toward: float) -> Floats:
+    """A rotation (3, 3) whose last row, the axis, is moved along its first two; they follow it the shortest way."""
+    axis = turn[2] + aside * turn[0] + toward * turn[1]
+    axis /= np.sqrt((axis * axis).sum())
+    across = turn[0] - (turn[0] * axis).sum() * axis
+    across /= np.sqrt((across * across).sum())
+    found = np.empty((3, 3))
+    found[0], found[1], found[2] = across, np.cross(axis, across), axis
+    return found

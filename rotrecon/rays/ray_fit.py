@@ -2,7 +2,7 @@
 
 from collections.abc import Callable
 from dataclasses import dataclass
-from functools import cached_property, partial
+from functools import cached_property, lru_cache, partial
 
 import numpy as np
 
@@ -253,4 +253,12 @@ def spread(pixels: Indices, count: int) -> Indices:
     """At most `count` of the pixels, evenly."""
     if len(pixels) <= count:
         return pixels.astype(np.int32)
-    return pixels[np.sort((np.arange(count) * GOLDEN % 1.0 * len(pixels)).astype(np.int64))].astype(np.int32)
+    return pixels[_spread_places(len(pixels), count)].astype(np.int32)
+
+
+@lru_cache(maxsize=32)
+def _spread_places(many: int, count: int) -> Indices:
+    """(count,) in order."""
+    places = np.sort((np.arange(count) * GOLDEN % 1.0 * many).astype(np.int32))
+    places.flags.writeable = False
+    return places
