@@ -44,24 +44,25 @@ class Likeness:
 
 def likeness_of(residual: Floats) -> Likeness:
     """The likeness of residuals (h, w), NaN where there is none."""
-    known = np.isfinite(residual)
-    variance = float(np.mean(np.square(residual[known]))) if known.any() else 0.0
-    total, pairs = _products(residual)
+    variance, total, pairs = _products(residual)
     told = (pairs >= FEWEST_PAIRS) & (variance > 0)
     lags, pairs = np.array(LAGS, dtype=np.float64)[told], pairs[told]
     return _fitted(lags, total[told] / pairs / variance, 1.0 / pairs)
 
 
 @compiled(MATRIX)
-def _products(residual: Floats) -> tuple[Floats, Floats]:
-    """Sums of the products of residuals (h, w) each lag apart, down and to the right, and how many they are."""
+def _products(residual: Floats) -> tuple[float, Floats, Floats]:
+    """Mean square of residuals (h, w), sums of the products of those each lag apart, and how many they are."""
     height, width = residual.shape
+    square, count = 0.0, 0
     total, pairs = np.zeros(len(LAGS)), np.zeros(len(LAGS))
     for row in range(height):
         for column in range(width):
             here = residual[row, column]
             if np.isnan(here):
                 continue
+            square += here * here
+            count += 1
             for number, lag in enumerate(LAGS):
                 if row + lag < height and not np.isnan(residual[row + lag, column]):
                     total[number] += here * residual[row + lag, column]
@@ -69,7 +70,7 @@ def _products(residual: Floats) -> tuple[Floats, Floats]:
                 if column + lag < width and not np.isnan(residual[row, column + lag]):
                     total[number] += here * residual[row, column + lag]
                     pairs[number] += 1
-    return total, pairs
+    return square / max(count, 1), total, pairs
 
 
 def _fitted(lags: Floats, alike: Floats, chance: Floats) -> Likeness:

@@ -8,7 +8,7 @@ import cv2
 import numpy as np
 
 from rotrecon.arrays import Bools, Floats, Indices, freeze
-from rotrecon.compiled import VECTOR, compiled
+from rotrecon.compiled import FLOAT, MATRIX, VECTOR, compiled
 from rotrecon.noise import RayNoise
 from rotrecon.rays.surfaces import Surface
 from rotrecon.rays.traces import Derivatives, Rays
@@ -229,12 +229,18 @@ def refine(
 
 def _step(gradient: Floats, information: Floats, damping: float) -> Floats:
     """Solution (k,) of the damped normal equations; zero where they have none."""
-    diagonal = information.reshape(-1)[:: len(gradient) + 1]
-    diagonal += damping * np.maximum(diagonal, 1e-300)
     try:
-        return np.asarray(np.linalg.solve(information, gradient), dtype=np.float64)
+        return _solved(gradient, information, damping)
     except np.linalg.LinAlgError:
         return np.zeros(len(gradient))
+
+
+@compiled(VECTOR, MATRIX, FLOAT)
+def _solved(gradient: Floats, information: Floats, damping: float) -> Floats:
+    damped = information.copy()
+    for i in range(len(gradient)):
+        damped[i, i] += damping * max(information[i, i], 1e-300)
+    return np.linalg.solve(damped, gradient)
 
 
 def _normal_equations(
