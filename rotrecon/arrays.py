@@ -25,6 +25,6 @@ def blocks(rows: NDArray[Scalar]) -> list[NDArray[Scalar]]:
 
 def freeze(record: Any) -> None:
     """Make every array held by a frozen dataclass read-only; called from its `__post_init__`."""
-    for value in cast(dict[str, Any], vars(record)).values():
+    for value in cast("dict[str, Any]", vars(record)).values():
         if isinstance(value, np.ndarray):
-            cast(NDArray[Any], value).setflags(write=False)
+            cast("NDArray[Any]", value).setflags(write=False)
