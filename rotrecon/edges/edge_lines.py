@@ -1,6 +1,7 @@
 """Which line of contrast near a predicted outline is the outline, to half a pixel."""
 
 from dataclasses import dataclass
+from functools import cached_property
 from typing import Any
 
 import cv2
@@ -61,12 +62,12 @@ class Stretch:
     def __len__(self) -> int:
         return len(self.half_width_px)
 
-    @property
+    @cached_property
     def spacing_px(self) -> float:
         """Distance of neighbours."""
         return float(np.median(np.linalg.norm(np.diff(self.point_px, axis=0), axis=1)))
 
-    @property
+    @cached_property
     def is_round(self) -> bool:
         """Whether its normals turn so much that a move along one of them is none along another."""
         return float(np.abs(np.diff(np.unwrap(np.arctan2(*self.normal_px.T[::-1])))).sum()) > ROUND_RAD

@@ -1,6 +1,7 @@
 """Where an object's outline runs in the picture, to a fraction of a pixel, near where depth says it is."""
 
 from dataclasses import dataclass, replace
+from functools import cached_property
 from typing import Any, cast
 
 import numpy as np
@@ -103,6 +104,11 @@ class _Crop:
     low_px: NDArray[np.int64]
     """(2,) its first column and row in the whole."""
 
+    @cached_property
+    def splines(self) -> list[Floats]:
+        """Coefficients of each channel in linear light."""
+        return [SCIPY.spline_filter(LINEAR_LIGHT[self.image[..., channel]]) for channel in range(3)]
+
     @staticmethod
     def of(image: Bytes, point_px: Floats, reach_px: float) -> "_Crop":
         """Round points (N, 2)."""
@@ -189,16 +195,15 @@ def _steps(crop: _Crop, clear: list[tuple[Indices, Stretch, Line]]) -> list[Step
 
 def _profiles(crop: _Crop, clear: list[tuple[Indices, Stretch, Line]]) -> list[Profiles]:
     """The colours across the line of every stretch."""
-    if not clear:
-        return []
-    splines = [SCIPY.spline_filter(LINEAR_LIGHT[crop.image[..., channel]]) for channel in range(3)]
     profiles: list[Profiles] = []
     for _, stretch, line in clear:
         half_width_px = float(stretch.half_width_px.min())
         across, deep = ACROSS_PX[-half_width_px <= ACROSS_PX], DEEP_PX[-SHADED_SHARE * half_width_px <= DEEP_PX]
         place = stretch.profiles_at(line.offset_px, np.concatenate([across, deep]))
         at = [place[..., 1], place[..., 0]]
-        channels = [SCIPY.map_coordinates(spline, at, order=3, prefilter=False, mode="nearest") for spline in splines]
+        channels = [
+            SCIPY.map_coordinates(spline, at, order=3, prefilter=False, mode="nearest") for spline in crop.splines
+        ]
         light, inside = np.split(np.stack(channels, axis=-1), [len(across)], axis=1)
         profiles.append(Profiles(stretch, line, across, light, deep, inside))
     return profiles

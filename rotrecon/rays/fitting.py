@@ -2,10 +2,11 @@
 
 from collections.abc import Callable
 from dataclasses import dataclass, replace
-from typing import Protocol
+from typing import Any, Protocol
 
 import cv2
 import numpy as np
+from numpy.typing import NDArray
 
 from rotrecon.arrays import Bools, Floats, Indices, freeze
 from rotrecon.compiled import FLOAT, MATRIX, VECTOR, compiled
@@ -230,13 +231,13 @@ def refine(
 def _step(gradient: Floats, information: Floats, damping: float) -> Floats:
     """Solution (k,) of the damped normal equations; zero where they have none."""
     try:
-        return _solved(gradient, information, damping)
+        return np.asarray(_solved(gradient, information, damping), dtype=np.float64)
     except np.linalg.LinAlgError:
         return np.zeros(len(gradient))
 
 
 @compiled(VECTOR, MATRIX, FLOAT)
-def _solved(gradient: Floats, information: Floats, damping: float) -> Floats:
+def _solved(gradient: Floats, information: Floats, damping: float) -> NDArray[np.floating[Any]]:
     damped = information.copy()
     for i in range(len(gradient)):
         damped[i, i] += damping * max(information[i, i], 1e-300)

@@ -6,6 +6,7 @@ from typing import Literal
 
 import numpy as np
 
+from rotrecon.arrays import Floats
 from rotrecon.rays.coarse_fit import follow
 from rotrecon.rays.fitting import TUKEY, Outline, tukey
 from rotrecon.rays.guard import Outlines, Task, doubting, settle
@@ -112,17 +113,17 @@ def _settled(scene: Scene, held: Held, surface: Surface, outlines: Outlines) -> 
     depths = _sound(settle(surface, Task(scene.patch, units, free, ())))
     if depths is None or not outlines:
         return depths
-    return _with_outline(scene, held, surface, depths, outlines)
-
-
-def _with_outline(scene: Scene, held: Held, surface: Surface, depths: RayFit, outlines: Outlines) -> RayFit | None:
-    """A surface fitted to the outline too; it doubts what that changes, and what the limbs as they are would change."""
-    units, free = surface.units(scene.length_m), held.free(surface)
     both = _sound(fine(surface, scene.patch, units, free, depths.sight, outlines))
-    if both is None or depths.sight == Sight():
-        return both and doubting(both, depths)
-    whole = _sound(fine(both.surface, scene.patch, units, free, Sight(), outlines))
-    return doubting(both, depths) if whole is None else doubting(doubting(both, depths), whole)
+    return both and _doubted(scene, both, depths, units)
+
+
+def _doubted(scene: Scene, both: RayFit, depths: RayFit, units: Floats) -> RayFit:
+    """A fit to depths and outline that doubts what the outline changes, and what the limbs as they are would change."""
+    doubted = doubting(both, depths)
+    if depths.sight == Sight():
+        return doubted
+    whole = _sound(fine(both.surface, scene.patch, units, both.free, Sight(), both.outlines))
+    return doubted if whole is None else doubting(doubted, whole)
 
 
 def _sound(fit: RayFit | None) -> RayFit | None:
@@ -144,7 +145,7 @@ def _like(lead: RayFit, scene: Scene, held: Held, surface: Surface) -> RayFit | 
     if both is None or _credit(scene, lead, both) > _credit(scene, lead, lead) + OUT_OF_QUESTION:
         return both
     depths = _sound(fine(surface, scene.patch, units, free, lead.sight))
-    return depths and _with_outline(scene, held, surface, depths, lead.outlines)
+    return depths and _doubted(scene, both, depths, units)
 
 
 def _credit(scene: Scene, lead: RayFit, fit: RayFit) -> float:
