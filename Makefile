@@ -11,6 +11,7 @@ all: .venv/installed
 	$(PYTHON) -m venv .venv >/dev/null 2>&1 || ($(APT) update && $(APT) install -y python3-venv && $(PYTHON) -m venv .venv)
 	$(BIN)/pip install --quiet --constraint constraints.txt hatchling editables
 	$(BIN)/pip install --quiet --constraint constraints.txt --no-build-isolation --editable .
+	$(BIN)/python -c 'import rotrecon.reconstruct'  # its loops are compiled now, not while somebody waits
 	touch $@
 
 .venv/installed-test: .venv/installed

@@ -8,7 +8,7 @@ import pytest
 ROOT = Path(__file__).parents[1]
 FORBIDDEN = {"app", "viser", "fastapi", "starlette", "uvicorn", "typer"}
 GIVEN = """
-    errors files arrays camera primitives contact workspace tool_table settings frame drawing outcome noise
+    errors files arrays compiled camera primitives contact workspace tool_table settings frame drawing outcome noise
 """.split()
 MATCHED = """
     stereo.rectification stereo.canvas stereo.disparity_noise stereo.matching stereo.carrying stereo.limits
@@ -26,7 +26,8 @@ BY_SECTIONS = """
     sections.radii sections.section_fit sections.by_sections
 """.split()
 FITTED = """
-    rays.traces rays.lateral rays.ball rays.surfaces rays.patch rays.correlation rays.fitting rays.ray_fit
+    rays.traces rays.lateral_rays rays.lateral rays.ball_rays rays.ball rays.surfaces rays.patch rays.correlation
+    rays.fitting rays.ray_fit
     rays.coarse_fit rays.starts
     edges.edge_lines edges.shading edges.edge_model edges.edge_steps edges.edges
     rays.limbs rays.guard rays.hypotheses rays.robust
@@ -59,8 +60,8 @@ STAGES = set(
 """They know the types, and not each other."""
 TYPES = set(
     """
-    arrays camera primitives contact settings frame drawing outcome tool_table
-    rays.traces rays.lateral rays.ball rays.surfaces rays.patch
+    arrays compiled camera primitives contact settings frame drawing outcome tool_table
+    rays.traces rays.lateral_rays rays.lateral rays.ball_rays rays.ball rays.surfaces rays.patch
 """.split()
 )
 

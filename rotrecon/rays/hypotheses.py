@@ -97,16 +97,16 @@ def hypotheses(scene: Scene, held: Held) -> dict[Shape, tuple[float, Surface]]:
         shape: [held.limiting(start) for start in of_shape] for shape, of_shape in starts.items()
     }
     followed: dict[Shape, Surface] = {
-        shape: _best(scene, held, of_shape) for shape, of_shape in limited_starts.items() if shape != "cone"
+        shape: best_of(scene, held, of_shape) for shape, of_shape in limited_starts.items() if shape != "cone"
     }
     cylinder = followed["cylinder"]
     assert isinstance(cylinder, Lateral)
-    followed["cone"] = _best(scene, held, [replace(cylinder, tapers=True), *limited_starts["cone"]])
+    followed["cone"] = best_of(scene, held, [replace(cylinder, tapers=True), *limited_starts["cone"]])
     return {shape: (coarse_cost(scene, surface), surface) for shape, surface in followed.items()}
 
 
-def _best(scene: Scene, held: Held, starts: Sequence[Surface]) -> Surface:
-    """The surface that the best start leads to."""
+def best_of(scene: Scene, held: Held, starts: Sequence[Surface]) -> Surface:
+    """The surface that the best start leads to, fitted coarsely."""
     scouts = spread(scene.pixels, SCOUT_PIXELS)
     edges = (
         None

@@ -207,7 +207,8 @@ Their sizes are estimates, by outlines and by hand, and so wide. Drawn once by h
 def _speed(tables: str) -> str:
     return f"""## Speed
 
-Medians after warm-up on one thread, on the machine that wrote this. One kind: told that it is a cylinder, whose pixels
-are half of the area.
+Medians after warm-up on one thread, on the machine that wrote this. One cylinder: from its starts, by the drawing, to
+its covariance. Drawing to Reconstruction: everything, with its sections, its parts and what else it may be; also where
+the operator says that it is a cylinder.
 
 {tables}"""
