@@ -68,22 +68,22 @@ class Lateral:
 
     def gap(self, rays: Rays) -> tuple[Floats, Floats]:
         """How far rays pass outside it, and the depth of their nearest points, both (N,); as `tangency` has them."""
-        points, squared, depth = self._nearest(rays)
+        points, squared, depth = self._nearest_to(rays)
         radius = self._radius_at(points[2])
         return (squared - radius * radius) / (2 * radius), depth
 
     def tangency(self, rays: Rays) -> Tangency:
         """How far rays pass outside it."""
-        points, squared, depth = self._nearest(rays)
+        points, squared, depth = self._nearest_to(rays)
         radius = self._radius_at(points[2])
         return Tangency(self._gradient(points), 1.0 / radius, (squared - radius * radius) / (2 * radius), depth)
 
     def off_middle(self, rays: Rays) -> Floats:
         """How far beside the axis rays (3, N) pass, over the radius there: 1 at the outline."""
-        points, squared, _ = self._nearest(rays)
+        points, squared, _ = self._nearest_to(rays)
         return np.sqrt(squared) / np.maximum(self._radius_at(points[2]), 1e-9)
 
-    def _nearest(self, rays: Rays) -> tuple[Floats, Floats, Floats]:
+    def _nearest_to(self, rays: Rays) -> tuple[Floats, Floats, Floats]:
         return nearest(np.ascontiguousarray(rays), self.turn, self._origin, self.radius_m, self.slope)
 
     @property
