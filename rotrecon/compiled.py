@@ -19,10 +19,13 @@ def compiled(*arguments: Any) -> Callable[[Function], Function]:
     """Compile a function for arguments of these types, once for all processes to come.
 
     That takes about half a second a function, and is kept beside the source, or in the user's cache where that cannot
-    be written. A division by zero gives inf, as numpy has it.
+    be written; where nothing can, every process compiles for itself. A division by zero gives inf, as numpy has it.
     """
 
     def compile_(function: Function) -> Function:
-        return cast(Function, NUMBA.njit([arguments], cache=True, error_model="numpy")(function))
+        try:
+            return cast(Function, NUMBA.njit([arguments], cache=True, error_model="numpy")(function))
+        except RuntimeError:
+            return cast(Function, NUMBA.njit([arguments], error_model="numpy")(function))
 
     return compile_
