@@ -12,12 +12,13 @@ from rotrecon.reconstruction import Reconstruction
 from rotrecon.tool_table import Tool
 
 STEEL_OPACITY, MOUTH_OPACITY = 0.55, 0.12
+ENVELOPE = "/world/marks/envelope"
 PARTS = ("left", "right", "body", "mouth")
 NO_BOX = (np.zeros((3, 3)), np.array([[0, 1, 2]]))
 
 
 class EnvelopeView:
-    """Nodes under `/world/envelope`, named the same for as long as the program runs."""
+    """Nodes under `ENVELOPE`, named the same for as long as the program runs."""
 
     def __init__(self, scene: SceneApi) -> None:
         self._scene = scene
@@ -35,7 +36,7 @@ class EnvelopeView:
         pixel = np.zeros(0, dtype=np.int32) if grasp is None else grasp.at_contact.pixel
         hit_m = transform(self._frame.T_base_camera, self._frame.points_m.reshape(-1, 3)[pixel])
         self._scene.add_point_cloud(
-            "/world/envelope/hit",
+            f"{ENVELOPE}/hit",
             hit_m if len(hit_m) else np.zeros((1, 3)),
             HIT_COLOR,
             point_size=2 * self._point_size_m,
@@ -50,7 +51,7 @@ class EnvelopeView:
         mesh = None if box is None else box.as_mesh()
         vertices, faces = NO_BOX if mesh is None else (np.asarray(mesh.vertices), np.asarray(mesh.faces))
         self._scene.add_mesh_simple(
-            f"/world/envelope/{name}",
+            f"{ENVELOPE}/{name}",
             vertices,
             faces,
             color=color,
@@ -62,7 +63,7 @@ class EnvelopeView:
             visible=box is not None,
         )
         self._scene.add_line_segments(
-            f"/world/envelope/{name} edges",
+            f"{ENVELOPE}/{name} edges",
             np.zeros((1, 2, 3)) if box is None else edges_of(box),
             color,
             thickness=1.5,
