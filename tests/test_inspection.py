@@ -24,7 +24,7 @@ from app.section_drawing import radius_interval_mm, section_svg, section_text
 from app.session import Measured, Session, step
 from app.stage_chart import STAGE_SERIES, stage_chart, stage_scales, stage_text
 from app.tool_panel import limits_mm
-from app.tool_text import next_view_html, place_html, tools_html, way
+from app.tool_text import free_instead, next_view_html, place_html, tools_html, way
 from rotrecon.camera import inverse, transform
 from rotrecon.contact import MOST_ANGLE_RAD, PROPOSED, Place
 from rotrecon.distance import Distance, distance_between
@@ -246,10 +246,7 @@ def test_a_tool_that_would_hit_something_is_said_in_the_hint(session: Session, r
     assert warning(session) is None
     grasp = grasp_in(result)
     assert grasp is not None
-    cloud = result.frame.points_m.copy()
-    box = grasp.envelope.jaws[0]
-    cloud[3, 4] = transform(inverse(result.frame.T_base_camera), box.center_m)
-    hit = replace(result, frame=replace(result.frame, points_m=cloud))
+    hit = with_point_in_jaw(result)
     told = warning(step(replace(session, measured=None), Reconstructed(session.revision, hit)))
     assert told is not None
     assert told.startswith("At the object it would hit 1 point of the cloud, the nearest ")
@@ -262,14 +259,51 @@ def test_a_tool_that_would_hit_something_is_said_in_the_hint(session: Session, r
     assert "Out of reach: the contact is" in told
 
 
+def test_the_nearest_free_contact_is_offered_and_has_to_be_decided_on_anew(
+    session: Session, result: Reconstruction
+) -> None:
+    assert free_instead(result) is None, "it is free where it is"
+    hit = with_point_in_jaw(result)
+    place = free_instead(hit)
+    assert place is not None
+    said = f"The nearest free contact is {1000 * place.along_m:+.0f} mm along the axis."
+    assert said in place_html(hit)
+    before = offered(Evidence(0, hit.drawing, hit.settings, hit), "Ann")
+    assert isinstance(before, Offered)
+    assert said in before.offer.in_the_way["mechanical cutter"]
+
+    moved = step(session, ContactPlaced(np.rad2deg(place.angle_rad), 1000 * place.along_m))
+    assert moved.revision > session.revision
+    drawing = moved.shown.complete
+    assert drawing is not None
+    anew = reconstruct(hit.frame, drawing, hit.settings)
+    assert free_instead(anew) is None
+    after = offered(Evidence(0, anew.drawing, anew.settings, anew), "Ann")
+    assert isinstance(after, Offered)
+    assert not after.offer.in_the_way
+    assert after.offer.digest != before.offer.digest
+
+    short = replace(result, frame=replace(result.frame, workspace=Workspace(reach_m=(0.0, 0.2))))
+    assert "No contact along the axis is free" in place_html(short)
+
+
+def with_point_in_jaw(result: Reconstruction) -> Reconstruction:
+    """The same with one more point in the cloud, in the way of the tool that is proposed."""
+    grasp = grasp_in(result)
+    assert grasp is not None
+    cloud = result.frame.points_m.copy()
+    cloud[3, 4] = transform(inverse(result.frame.T_base_camera), grasp.envelope.jaws[0].center_m)
+    return replace(result, frame=replace(result.frame, points_m=cloud))
+
+
 def assert_blocked_until_overridden(hit: Reconstruction) -> None:
     """What is proposed of it cannot be armed, as it says why; the record has it too."""
     event = offered(Evidence(0, hit.drawing, hit.settings, hit), "Ann")
     assert isinstance(event, Offered)
     assert event.offer.tool == "mechanical cutter"
-    (why,) = event.offer.in_the_way["mechanical cutter"]
+    why, free = event.offer.in_the_way["mechanical cutter"]
     assert why.startswith("At the object it would hit 1 point of the cloud")
-    assert why in event.entry.payload["in_the_way"]
+    assert f"{why} {free}" in event.entry.payload["in_the_way"]
     table = Table(offer=event.offer)
     table.arm()
     assert table.said_to(ANN) == why
