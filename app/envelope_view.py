@@ -7,10 +7,12 @@ from app.inspection import grasp_in
 from rotrecon.camera import transform
 from rotrecon.envelope import Box
 from rotrecon.frame import Frame
-from rotrecon.grasp_overlay import HIT_COLOR, MOUTH_COLOR, STEEL_COLOR, edges_of
+from rotrecon.grasp_overlay import HIT_COLOR, MOUTH_COLOR, edges_of
 from rotrecon.reconstruction import Reconstruction
 from rotrecon.tool_table import Tool
 
+TOOL_COLOR = (204, 132, 0)
+"""Darker than on the picture: it has to stand out from a white page and from a black one."""
 STEEL_OPACITY, MOUTH_OPACITY = 0.55, 0.12
 ENVELOPE = "/world/marks/envelope"
 PARTS = ("left", "right", "body", "mouth")
@@ -47,7 +49,7 @@ class EnvelopeView:
 
     def _show_box(self, name: str, box: Box | None) -> None:
         is_mouth = name == "mouth"
-        color = MOUTH_COLOR if is_mouth else STEEL_COLOR
+        color = MOUTH_COLOR if is_mouth else TOOL_COLOR
         mesh = None if box is None else box.as_mesh()
         vertices, faces = NO_BOX if mesh is None else (np.asarray(mesh.vertices), np.asarray(mesh.faces))
         self._scene.add_mesh_simple(

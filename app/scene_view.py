@@ -5,7 +5,7 @@ from numpy.typing import NDArray
 from viser import ClientHandle, LineSegmentsHandle, SceneNodePointerEvent, ViserServer
 from viser import transforms as tf
 
-from app.envelope_view import EnvelopeView
+from app.envelope_view import TOOL_COLOR, EnvelopeView
 from app.limit_lines import limit_lines
 from app.page import SectionPointed
 from app.panels import Post
@@ -20,8 +20,8 @@ from rotrecon.residuals import Residuals
 from rotrecon.tool_table import Tool
 from rotrecon.tools import NoTool, ToolProposal
 
-OBJECT_COLOR, SOLID_COLOR, AXIS_COLOR, TOOL_COLOR = (220, 40, 40), (86, 180, 233), (0, 200, 255), (240, 228, 66)
-SECTION_COLOR, LIMITS_COLOR, FRUSTUM_COLOR = (204, 121, 167), (230, 159, 0), (150, 150, 150)
+OBJECT_COLOR, SOLID_COLOR, AXIS_COLOR = (220, 40, 40), (86, 180, 233), (0, 132, 240)
+SECTION_COLOR, LIMITS_COLOR, FRUSTUM_COLOR = (204, 121, 167), (144, 132, 72), (145, 145, 145)
 OBJECT_POINTS = 10_000
 """As many of the segmented points as anybody can tell apart."""
 SOLID_OPACITY, FAINT_OPACITY = 0.45, 0.1
