@@ -17,7 +17,7 @@ from app.record.store import FILE, Record
 from rotrecon.reconstruct import reconstruct
 from rotrecon.settings import Settings
 from tests.exact import cylinder, drawing_along, exact_frame
-from tests.test_record import tampered
+from tests.records import tampered
 
 SOLID = cylinder([0.0, 0.0, 0.9], [0.1, 1.0, 0.2], 0.06)
 
