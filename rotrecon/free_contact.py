@@ -41,12 +41,12 @@ def nearest_free(result: Reconstruction, tool: Tool) -> Place | None:
 
 
 def _strange_in(result: Reconstruction, fit: Fit, envelopes: list[Envelope]) -> Floats:
-    """The points (n, 3), base coordinates, that are not the object's, of a box round all ways, which lie alike."""
+    """The points (n, 3), base coordinates, that are not the object's, of a box round all ways."""
     if not envelopes:
         return np.zeros((0, 3))
-    ways, turn = [envelope.way for envelope in envelopes], envelopes[0].way.turn
-    low = np.min([turn @ way.center_m - way.half_m for way in ways], axis=0)
-    high = np.max([turn @ way.center_m + way.half_m for way in ways], axis=0)
+    turn = envelopes[0].way.turn  # which all share but that of a ball met along the line of sight
+    corners = np.concatenate([envelope.way.corners_m for envelope in envelopes]) @ turn.T
+    low, high = corners.min(axis=0), corners.max(axis=0)
     pixel, in_base = points_in(Box(turn, (low + high) / 2 @ turn, (high - low) / 2), result.frame)
     among = np.zeros(result.frame.depth_m.size, dtype=np.bool_)
     among[pixel] = True

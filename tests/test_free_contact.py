@@ -9,9 +9,14 @@ from hypothesis import strategies as st
 
 from rotrecon.contact import Place, limits_of
 from rotrecon.free_contact import STEP_M, nearest_free
+from rotrecon.grasp import grasp_of
+from rotrecon.primitives import Sphere
+from rotrecon.reconstruct import reconstruct
 from rotrecon.reconstruction import Reconstruction
+from rotrecon.settings import Settings
 from rotrecon.tool_table import default_tools
 from rotrecon.workspace import Workspace
+from tests.exact import drawing_along, exact_frame
 from tests.test_grasp import grasp, measured, with_point
 
 CUTTER = default_tools()[0]
@@ -58,6 +63,21 @@ def test_the_arm_gets_there() -> None:
     assert found is not None
     assert abs(found.along_m) == pytest.approx(0.025)
     assert is_free(result, found)
+
+
+def test_a_ball_has_one_too() -> None:
+    ball = Sphere(np.array([0.1, 0.05, 1.0]), np.array([0.0, 1.0, 0.0]), 0.06)
+    result = reconstruct(exact_frame(ball), drawing_along(ball), Settings())
+    grip = default_tools()[-1]
+    now = grasp_of(result, grip, Place(0.0, 0.01))
+    assert now is not None
+    hit, _ = with_point(result, now.envelope.jaws[0].center_m)
+    found = nearest_free(replace(hit, drawing=replace(hit.drawing, contact=Place(0.0, 0.01))), grip)
+    assert found is not None
+    there = grasp_of(hit, grip, found)
+    assert there is not None
+    assert not len(there.at_contact.pixel)
+    assert not len(there.on_way.pixel)
 
 
 def test_where_nothing_is_free_there_is_none() -> None:
