@@ -1,6 +1,7 @@
-# make: install; make run [SCENE=folder]: open the console; make test: every check.
+# make: install; make run [SCENE=folder] [PORT=8090]: open the console; make test: every check.
 PYTHON ?= python3
 SCENE ?=
+PORT =
 BIN := .venv/bin
 APT := $(shell command -v sudo) apt-get
 CHECKED := rotrecon app tests scripts
@@ -24,7 +25,7 @@ chromium:
 	|| ($(APT) update && ($(APT) install -y chromium libatomic1 || $(APT) install -y chromium-browser libatomic1))
 
 run: .venv/installed
-	$(BIN)/rotrecon serve $(SCENE)
+	$(BIN)/rotrecon serve $(SCENE) $(if $(PORT),--port $(PORT))
 
 test: .venv/installed-test chromium
 	$(BIN)/ruff check $(CHECKED)

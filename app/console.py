@@ -22,6 +22,7 @@ from app.deciding.events import (
     PageHeard,
     PageWent,
     PicturesSent,
+    Voided,
 )
 from app.deciding.settings import DecisionSettings
 from app.deciding.states import Deciding
@@ -50,6 +51,7 @@ CLOUD_POINTS = 40_000
 """Points of the cloud that are sent to a page: half a megabyte."""
 SOMEBODY = "operator"
 """Who is at a page when nobody had to log in."""
+CLOSED = "the console was closed"
 log = logging.getLogger(__name__)
 
 
@@ -152,10 +154,14 @@ class Console:
         with redirect_stdout(io.StringIO()):
             return ViserServer(self._host, self._port, verbose=False)
 
-    def stop(self) -> None:
-        """Close the server and every page, when what is being shown is shown; measurements are given up."""
+    def end(self) -> None:
+        """Take in nothing more: what was decided counts no more, which is recorded and told before this returns."""
         self._loop.call_soon_threadsafe(self.post, Stopped())
         self._running.result()
+
+    def stop(self) -> None:
+        """Close the server and every page, when what is being shown is shown; measurements are given up."""
+        self.end()
         with redirect_stdout(io.StringIO()):
             self.server.stop()
 
@@ -206,6 +212,9 @@ class Console:
             beside = (self._measurements, self._desk, self._newcomers, self._archive)
             if self._queue.empty() and not any(one.busy for one in beside):
                 self._settled.set()
+        self.session = step(self.session, Voided(seconds(), CLOSED))
+        with logged("the end was not recorded"):
+            await self._tell(happened=True, ticked=True)
         ticking.cancel()
         beside = (self._measurements, self._desk, self._newcomers, self._archive)
         tasks = (ticking, *(task for one in beside for task in one.stop()))

@@ -35,13 +35,14 @@ def as_jpeg(image: Bytes, quality: int) -> Encoded:
     return Encoded(data.tobytes(), "jpeg")
 
 
-def as_layer(image: Bytes, below: Bytes) -> Layer:
+def as_layer(image: Bytes, below: Bytes, opacity: float = 1.0) -> Layer:
     """What a picture (H, W, 3) RGB shows that the one below it does not, the rest transparent."""
     differs = cv2.bitwise_not(cv2.inRange(cv2.absdiff(image, below), (0, 0, 0), (0, 0, 0)))
     left, top, width, height = cv2.boundingRect(differs)
     width, height = max(width, 1), max(height, 1)  # where nothing differs, a pixel of nothing
     cut = np.s_[top : top + height, left : left + width]
     layer = cv2.copyTo(cv2.cvtColor(image[cut], cv2.COLOR_RGB2BGRA), differs[cut])
+    layer[..., 3] = layer[..., 3] * opacity
     _, data = cv2.imencode(".png", layer, [cv2.IMWRITE_PNG_COMPRESSION, SPARSE_COMPRESSION])
     return Layer(Encoded(data.tobytes(), "png"), (left, top, width, height))
 

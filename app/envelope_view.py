@@ -7,17 +7,20 @@ from app.inspection import grasp_in
 from rotrecon.camera import transform
 from rotrecon.envelope import Box
 from rotrecon.frame import Frame
-from rotrecon.grasp_overlay import HIT_COLOR, MOUTH_COLOR, STEEL_COLOR, edges_of
+from rotrecon.grasp_overlay import HIT_COLOR, MOUTH_COLOR, edges_of
 from rotrecon.reconstruction import Reconstruction
 from rotrecon.tool_table import Tool
 
+TOOL_COLOR = (204, 132, 0)
+"""Darker than on the picture: it has to stand out from a white page and from a black one."""
 STEEL_OPACITY, MOUTH_OPACITY = 0.55, 0.12
+ENVELOPE = "/world/marks/envelope"
 PARTS = ("left", "right", "body", "mouth")
 NO_BOX = (np.zeros((3, 3)), np.array([[0, 1, 2]]))
 
 
 class EnvelopeView:
-    """Nodes under `/world/envelope`, named the same for as long as the program runs."""
+    """Nodes under `ENVELOPE`, named the same for as long as the program runs."""
 
     def __init__(self, scene: SceneApi) -> None:
         self._scene = scene
@@ -35,7 +38,7 @@ class EnvelopeView:
         pixel = np.zeros(0, dtype=np.int32) if grasp is None else grasp.at_contact.pixel
         hit_m = transform(self._frame.T_base_camera, self._frame.points_m.reshape(-1, 3)[pixel])
         self._scene.add_point_cloud(
-            "/world/envelope/hit",
+            f"{ENVELOPE}/hit",
             hit_m if len(hit_m) else np.zeros((1, 3)),
             HIT_COLOR,
             point_size=2 * self._point_size_m,
@@ -46,11 +49,11 @@ class EnvelopeView:
 
     def _show_box(self, name: str, box: Box | None) -> None:
         is_mouth = name == "mouth"
-        color = MOUTH_COLOR if is_mouth else STEEL_COLOR
+        color = MOUTH_COLOR if is_mouth else TOOL_COLOR
         mesh = None if box is None else box.as_mesh()
         vertices, faces = NO_BOX if mesh is None else (np.asarray(mesh.vertices), np.asarray(mesh.faces))
         self._scene.add_mesh_simple(
-            f"/world/envelope/{name}",
+            f"{ENVELOPE}/{name}",
             vertices,
             faces,
             color=color,
@@ -62,7 +65,7 @@ class EnvelopeView:
             visible=box is not None,
         )
         self._scene.add_line_segments(
-            f"/world/envelope/{name} edges",
+            f"{ENVELOPE}/{name} edges",
             np.zeros((1, 2, 3)) if box is None else edges_of(box),
             color,
             thickness=1.5,

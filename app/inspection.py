@@ -3,6 +3,8 @@
 from functools import lru_cache
 
 from rotrecon.clearance import Clearance
+from rotrecon.contact import Place
+from rotrecon.free_contact import nearest_free
 from rotrecon.grasp import Grasp, clearances_of, grasp_of, shown_tool
 from rotrecon.line_stages import Line, line_of
 from rotrecon.next_view import NextView, next_view
@@ -10,6 +12,7 @@ from rotrecon.overlay import first_cut_line
 from rotrecon.reconstruction import Reconstruction
 from rotrecon.residuals import Residuals, residuals_of
 from rotrecon.tool_table import Tool
+from rotrecon.tools import ToolProposal
 
 
 @lru_cache(maxsize=2)
@@ -27,6 +30,12 @@ def grasp_in(result: Reconstruction, tool: Tool | None = None) -> Grasp | None:
 @lru_cache(maxsize=8)
 def _grasp(result: Reconstruction, tool: Tool) -> Grasp | None:
     return grasp_of(result, tool)
+
+
+@lru_cache(maxsize=2)
+def free_place_in(result: Reconstruction) -> Place | None:
+    """The nearest place along the axis where the tool that is proposed is free; None where there is none."""
+    return nearest_free(result, result.tool.tool) if isinstance(result.tool, ToolProposal) else None
 
 
 @lru_cache(maxsize=2)

@@ -11,6 +11,7 @@ from app.describe import describe
 from app.record.entries import EntryKind, Head, Written
 from app.record.errors import NoSuchEntry
 from app.record.evidence import evidence_of, replay, said_with
+from app.record.history import why
 from app.record.store import Record
 from app.record.verify import verify
 from app.replay_text import replay_lines
@@ -19,6 +20,11 @@ from rotrecon.drawing import DrawingError
 
 DIFFERENT, NOTHING = 1, 3
 """Exit codes: a record that is not whole or a number that is not the same; nothing there to show or compute."""
+
+LINE_CHARACTERS = 120
+"""Of an entry in a list: what terminals and logs show without breaking it. `log show` says all of it."""
+TOOL_CHARACTERS = 18
+"""Of the column of tools: the longest of the table that ships has 17."""
 
 Data = Annotated[
     Path | None, typer.Option("--data", metavar="DIR", help="The record's folder; the user's own when left out.")
@@ -121,20 +127,27 @@ def replay_(number: Number, data: Data = None) -> None:
 
 
 def _line(written: Written) -> str:
-    """An entry in one line."""
-    content = written.content
-    digest = (content["digest"] or "-")[:12]
-    return f"{written.id:5}  {content['when'][:19]}Z  {content['kind']:10}  {digest}  {content['who']}{_what(content)}"
+    """An entry in one line: number, time, kind, digest, tool, who, and what was measured or why."""
+    content, said = written.content, said_with(written)
+    answer = content["payload"].get("answer") or {}
+    digest, tool = (content["digest"] or "-")[:8], said.get("tool") or answer.get("tool") or "-"
+    line = f"{written.id:5}  {content['when'][:19]}Z  {content['kind']:10}  {digest:8}  "
+    line += f"{_cut(tool, TOOL_CHARACTERS):{TOOL_CHARACTERS}}  {content['who']}"
+    what = _measured(answer) or why(said)
+    return _cut(f"{line}: {what}" if what else line, LINE_CHARACTERS)
 
 
-def _what(content: dict[str, Any]) -> str:
-    """What was measured, of an entry that holds it."""
-    answer = content["payload"].get("answer")
-    if answer is None:
+def _measured(answer: dict[str, Any]) -> str:
+    """What was measured, or why that led to no tool."""
+    if not answer:
         return ""
-    if answer["kind"] is None:
-        return f": {answer['reasons'][0]}"
-    return f": {answer['kind']} {answer['diameter_mm']:.1f} mm, {answer['tool'] or 'no tool'}"
+    return f"{answer['kind']} {answer['diameter_mm']:.1f} mm" if answer["tool"] else next(iter(answer["reasons"]), "")
+
+
+def _cut(text: str, characters: int) -> str:
+    """A text on one line that is no longer than that."""
+    text = text.replace("\n", " ")
+    return text if len(text) <= characters else f"{text[: characters - 1]}…"
 
 
 def _entry(record: Record, number: int) -> Written:

@@ -10,10 +10,10 @@ from app.archive import Exported, Listed, Told
 from app.browsing import Asked
 from app.camera_view import CameraView
 from app.charts import section_count
+from app.covering import Covering
 from app.deciding.events import DecisionEvent
 from app.deciding.states import Said
 from app.decision_panel import DecisionPanel
-from app.encoded import put
 from app.events import Event, HandleMoved, PointerDragged, VertexClicked
 from app.hint_panel import HintPanel
 from app.history_panel import HistoryPanel, Looked
@@ -43,7 +43,6 @@ from app.session import Notice, Session
 from app.showing import in_session_unit
 from app.tour import ticked
 from rotrecon.reconstruction import Reconstruction
-from rotrecon.tool_table import Tool
 
 NOTICE_SECONDS = 10.0
 BRAND_COLOR = (60, 147, 208)
@@ -75,10 +74,9 @@ class PageView:
         self._camera_view = CameraView(
             client, pictures.frame, pictures.frame.image, self._handle_dragged, self._dragged
         )
+        self._covering = Covering(self._camera_view, pictures)
         self._world = client.scene.add_frame("/world", show_axes=False)
         self._drag_start_px: Pixel = (0.0, 0.0)
-        self._picture_of: float | None = 0.0
-        self._layer_of: object = (None, 0.0, 0, "nothing", (), None)
         self._lit: object = None
         self._view = ""
         self._dark = True
@@ -124,7 +122,8 @@ class PageView:
         self.state = replace(self.state, ends_px=())
         if pictures.frame.image.shape != before:
             self.state = replace(self.state, zoom=1.0, center_px=None, last_point_px=None)
-        self._picture_of = self._layer_of = self._lit = None
+        self._lit = None
+        self._covering.hold(pictures)
         self._camera_view.hold(pictures.frame)
         self._panels.hold(pictures)
         self._inspection.hold(pictures)
@@ -147,10 +146,9 @@ class PageView:
         if page.view == "camera":
             self._camera_view.look(page)
         self._camera_view.show(session.shown, session.vertices_px, page)
-        if not moving:
-            self._show_picture(result, section, session.overriding)
+        self._covering.show(page, result, section, session.overriding, moving)
         if page.view == "3D":
-            self._show_own_in_scene(result, section)
+            self._show_own_in_scene(result if session.up_to_date else None, section)
         self._panels.show(session, page, section, moving)
         self._newer.show(session)
         self._history.show(session, self.looked, page.browsing)
@@ -190,16 +188,6 @@ class PageView:
             self._scene.hide_own(self.client)
         else:
             self._scene.look(self.client, self._world_pose)
-
-    def _show_picture(self, result: Reconstruction | None, section: int, tool: Tool | None) -> None:
-        page = self.state
-        if page.depth_opacity != self._picture_of:
-            self._picture_of = page.depth_opacity
-            put(self._camera_view.picture, self._pictures.sent_picture(page.depth_opacity))
-        key = (result, page.depth_opacity, 0 if result is None else section, page.overlay, page.ends_px, tool)
-        if key != self._layer_of:
-            self._layer_of = key
-            self._camera_view.cover(self._pictures.sent_layer(*key))
 
     def _show_notice(self, session: Session) -> None:
         """Tell of a failure, and take that away when it is no longer one of what is shown."""

@@ -53,7 +53,7 @@ class Pages:
             with logged("the panels cannot be shown"):
                 self.panels.show(session)
             with logged("the scene cannot be shown"):
-                self._scene.show(session.reconstruction, session.overriding)
+                self._scene.show(session.reconstruction, session.overriding, faint=not session.up_to_date)
         self._server.flush()
         while self._opened:
             client_id, client = self._opened.popitem()

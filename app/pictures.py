@@ -31,6 +31,8 @@ from rotrecon.tool_table import Tool
 STAGES: dict[LayerName, Stage] = {"close pixels": "close", "accepted pixels": "accepted", "segmentation": "object"}
 """The layers that are figure 3 a, b and c of the paper."""
 SECTION_COLOR = (204, 121, 167)
+FAINT_OPACITY = 0.3
+"""Of what is drawn over the picture and is not of the latest drawing."""
 RULER_COLOR = (255, 255, 255)
 KEPT_COLOR, GONE_COLOR, BACK_COLOR = (60, 147, 208), (213, 94, 0), (204, 121, 167)
 """Of a line of pixels: what a step left, took away and brought back."""
@@ -82,10 +84,12 @@ class Pictures:
         overlay: OverlayName,
         ends_px: tuple[Pixel, ...],
         tool: Tool | None = None,
+        faint: bool = False,
     ) -> Layer:
-        """All that is drawn over it, as it is sent."""
+        """All that is drawn over it, as it is sent; `faint` where a newer one is on its way to replace it."""
         image = self.camera_view(result, opacity, section, overlay, tool)
-        return as_layer(self.with_ends(image, ends_px) if ends_px else image, self.with_depth(opacity))
+        image = self.with_ends(image, ends_px) if ends_px else image
+        return as_layer(image, self.with_depth(opacity), FAINT_OPACITY if faint else 1.0)
 
     def _sent_television(self, result: Reconstruction | None, layer: LayerName) -> Encoded:
         return as_jpeg(self.television(result, layer), PANEL_QUALITY)

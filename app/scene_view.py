@@ -5,7 +5,7 @@ from numpy.typing import NDArray
 from viser import ClientHandle, LineSegmentsHandle, SceneNodePointerEvent, ViserServer
 from viser import transforms as tf
 
-from app.envelope_view import EnvelopeView
+from app.envelope_view import TOOL_COLOR, EnvelopeView
 from app.limit_lines import limit_lines
 from app.page import SectionPointed
 from app.panels import Post
@@ -20,11 +20,12 @@ from rotrecon.residuals import Residuals
 from rotrecon.tool_table import Tool
 from rotrecon.tools import NoTool, ToolProposal
 
-OBJECT_COLOR, SOLID_COLOR, AXIS_COLOR, TOOL_COLOR = (220, 40, 40), (86, 180, 233), (0, 200, 255), (240, 228, 66)
-SECTION_COLOR, LIMITS_COLOR, FRUSTUM_COLOR = (204, 121, 167), (230, 159, 0), (150, 150, 150)
+OBJECT_COLOR, SOLID_COLOR, AXIS_COLOR = (220, 40, 40), (86, 180, 233), (0, 132, 240)
+SECTION_COLOR, LIMITS_COLOR, FRUSTUM_COLOR = (204, 121, 167), (144, 132, 72), (145, 145, 145)
 OBJECT_POINTS = 10_000
 """As many of the segmented points as anybody can tell apart."""
-SOLID_OPACITY = 0.45
+SOLID_OPACITY, FAINT_OPACITY = 0.45, 0.1
+"""Of the solid that was measured, and of one that another is on its way to replace."""
 
 
 class SceneView:
@@ -36,6 +37,9 @@ class SceneView:
         self._tool: Tool | None = None
         self._limits: list[LineSegmentsHandle] = []
         self._scene.add_frame("/world", show_axes=False)
+        self._marks = self._scene.add_frame("/world/marks", show_axes=False)
+        """What stands at the solid: its axis and the tool."""
+        self._show_solid(None)
         self._envelope = EnvelopeView(self._scene)
         self.hold(frame, picture)
 
@@ -67,11 +71,18 @@ class SceneView:
         )
         self._envelope.hold(frame, self._point_size_m())
 
-    def show(self, result: Reconstruction | None, tool: Tool | None = None) -> None:
+    def show(self, result: Reconstruction | None, tool: Tool | None = None, *, faint: bool = False) -> None:
         """Show what was segmented, and the solid with its axis, contact point and approach, if there is one.
 
-        A `tool` stands at its place, else the one that is proposed or may fit.
+        A `tool` stands at its place, else the one that is proposed or may fit. Of a `faint` result, which another is on
+        its way to replace, only a trace of the solid is left.
         """
+        self._show_result(result, tool)
+        self._object.visible = result is not None and not faint
+        self._marks.visible = not faint
+        self._solid.opacity = FAINT_OPACITY if faint else SOLID_OPACITY
+
+    def _show_result(self, result: Reconstruction | None, tool: Tool | None) -> None:
         if self._tool != tool or self._shown is not result:
             self._tool = tool
             self._envelope.show(result, tool)
@@ -82,7 +93,6 @@ class SceneView:
             pixel = result.segments.pixel[result.segmentation.kept]
             pixel = pixel[:: max(1, -(-len(pixel) // OBJECT_POINTS))]
             self._object.points = self._in_base(pixel).astype(np.float32)
-        self._object.visible = result is not None
         solid = None if result is None else result.solid
         self._show_solid(solid)
         self._show_tool(None if result is None else result.tool, solid)
@@ -191,7 +201,7 @@ class SceneView:
 
     def _show_solid(self, solid: Primitive | None) -> None:
         mesh = None if solid is None else as_mesh(solid)
-        node = self._scene.add_mesh_simple(
+        self._solid = self._scene.add_mesh_simple(
             "/world/solid",
             np.zeros((3, 3)) if mesh is None else np.asarray(mesh.vertices),
             np.array([[0, 1, 2]]) if mesh is None else np.asarray(mesh.faces),
@@ -202,13 +212,13 @@ class SceneView:
             receive_shadow=False,
             visible=mesh is not None,
         )
-        node.on_click(self._clicked)
+        self._solid.on_click(self._clicked)
         ends = np.zeros((1, 2, 3))
         if solid is not None:
             overhang = 1.3 * np.array(solid.ends)[:, None]
             ends = (solid.center_m + overhang * solid.direction)[None]
         self._scene.add_line_segments(
-            "/world/axis", ends, AXIS_COLOR, thickness=3.0, thickness_units="screen", visible=solid is not None
+            "/world/marks/axis", ends, AXIS_COLOR, thickness=3.0, thickness_units="screen", visible=solid is not None
         )
 
     async def _clicked(self, event: SceneNodePointerEvent) -> None:
@@ -220,7 +230,7 @@ class SceneView:
         contact_m = np.zeros(3) if proposal is None else proposal.contact_point_m
         approach = np.array([0.0, 0.0, 1.0]) if proposal is None else proposal.approach
         self._scene.add_arrows(
-            "/world/approach",
+            "/world/marks/approach",
             np.array([[contact_m - length_m * approach, contact_m]]),
             TOOL_COLOR,
             shaft_radius=length_m / 40,
@@ -229,7 +239,7 @@ class SceneView:
             visible=proposal is not None,
         )
         self._scene.add_icosphere(
-            "/world/contact",
+            "/world/marks/contact",
             length_m / 20,
             TOOL_COLOR,
             position=contact_m,

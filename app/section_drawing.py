@@ -48,14 +48,24 @@ def _why_none(result: Reconstruction) -> str:
 
 
 def line_text(result: Reconstruction | None, section: int) -> str:
-    """What each step of paper 3.2 did on the line of pixels that a section was made of; nothing if it has none."""
+    """What each step of paper 3.2 did on the line of pixels that a section was made of; nothing if it has none.
+
+    A sum from the pixels with depth to those that are kept. The section itself is cut anew across the axis that was
+    found, and holds other pixels.
+    """
     row = None if result is None or section >= section_count(result) else first_cut_line(result, section)
     if result is None or row is None:
         return ""
     segmentation = result.segmentation
     mean_mm, sigma_mm = 1000 * segmentation.mean_m[-1, row], 1000 * segmentation.sigma_m[-1, row]
-    steps = ", ".join(f"{count} {step}" for step, count in segmentation.counts(row).items())
-    return f"On its line of pixels: {steps}; mean depth {mean_mm:.1f} mm, sigma {sigma_mm:.1f} mm."
+    counts, inside = segmentation.counts(row), int(result.segments.inside[row].sum())
+    known, kept = (counts.pop(step) for step in ("with depth", "kept"))
+    signs = {step: "+" if step == "grown back" else "\u2212" for step in counts}
+    steps = "".join(f" {signs[step]} {count} {step}" for step, count in counts.items() if count)
+    return (
+        f"On its line across the stroke, of {inside} pixels in the area: {known} with usable depth{steps} = {kept} kept"
+        f"; mean depth {mean_mm:.1f} mm, sigma {sigma_mm:.1f} mm."
+    )
 
 
 @lru_cache(maxsize=4)

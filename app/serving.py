@@ -1,6 +1,8 @@
 """Serves the console through the guarded door until it is interrupted, and says how it is reached."""
 
-from collections.abc import Callable
+import signal
+from collections.abc import Callable, Iterator
+from contextlib import contextmanager
 from pathlib import Path
 from threading import Event as ThreadEvent
 
@@ -34,7 +36,7 @@ def serve(
     tour: bool = False,
     announce: Callable[[str], None] = print,
 ) -> None:
-    """Serve the console until interrupted; says where it is to be found, and how to get in.
+    """Serve the console until interrupted or terminated; says where it is to be found, and how to get in.
 
     Without a `record` nothing can be decided; a `tour` leads whoever opens a page. Raises HostError, before anything is
     opened, for an address that cannot be listened on, is taken, or that others can reach while users or TLS are
@@ -59,14 +61,26 @@ def serve(
     door = Door(hidden, people, socket, host, certificate, camera_commands=console.panels.camera_commands)
     try:
         door.start(robot_routes(ConsoleCell(console), door.gate, door.guard))
-        for line in (*console.held.notes, *announcements(door)):
-            announce(line)
-        ThreadEvent().wait()
+        with _ended_by_sigterm():
+            for line in (*console.held.notes, *announcements(door)):
+                announce(line)
+            ThreadEvent().wait()
     except KeyboardInterrupt:
         announce("Closed.")
     finally:
+        console.end()  # while the door is open, so that a robot that follows the decision is told that it is void
         door.stop()
         console.stop()
+
+
+@contextmanager
+def _ended_by_sigterm() -> Iterator[None]:
+    """Let a supervisor's SIGTERM do what Ctrl+C does: without a handler nothing would be recorded."""
+    before = signal.signal(signal.SIGTERM, signal.default_int_handler)
+    try:
+        yield
+    finally:
+        signal.signal(signal.SIGTERM, before)
 
 
 def announcements(door: Door) -> tuple[str, ...]:

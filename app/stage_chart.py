@@ -61,9 +61,12 @@ def stage_text(line: Line | None, step: int) -> str:
         return "No line of pixels: this section has none, or nothing is measured."
     number = min(step, len(line.stages) - 1)
     stage = line.stages[number]
-    parts = [f"Step {number + 1} of {len(line.stages)}, {stage.name}: {int(stage.members.sum())} pixels kept"]
-    parts += [f"{int(stage.removed.sum())} taken away"] if stage.removed.any() else []
-    parts += [f"{int(stage.added.sum())} brought back"] if stage.added.any() else []
+    removed, added, kept = (int(which.sum()) for which in (stage.removed, stage.added, stage.members))
+    sum_ = f"{kept + removed - added} " if removed or added else ""
+    sum_ += f"\u2212 {removed} taken away " if removed else ""
+    sum_ += f"+ {added} brought back " if added else ""
+    sum_ += "= " if sum_ else ""
+    parts = [f"Step {number + 1} of {len(line.stages)}, {stage.name}: {sum_}{kept} pixels kept"]
     parts += [] if stage.mean_m is None else [f"mean {1000 * stage.mean_m:.1f} mm"]
     parts += [] if stage.reach_m is None else [f"3 sigma {1000 * stage.reach_m:.1f} mm"]
     return ", ".join(parts) + "."

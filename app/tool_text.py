@@ -3,7 +3,7 @@
 from html import escape
 from math import degrees
 
-from app.inspection import clearances_in, grasp_in, next_view_in
+from app.inspection import clearances_in, free_place_in, grasp_in, next_view_in
 from app.origins import from_
 from app.wording import from_to
 from rotrecon.clearance import Clearance
@@ -77,6 +77,8 @@ def place_html(result: Reconstruction | None, tool: Tool | None = None) -> str:
     bounded = limits.reach_m is not None or limits.box_m is not None
     checks = [*hit_lines(grasp), *(reach_lines(grasp) if bounded else ())]
     rows = "".join(f'<li class="{"rr-good" if good else "rr-bad"}">{escape(text)}</li>' for good, text in checks)
+    if is_proposed and not all(good for good, _ in checks):
+        rows += f"<li>{escape(free_text(result))}</li>"
     if not bounded:
         rows += f'<li class="rr-dim">{UNBOUNDED}</li>'
     return (
@@ -92,14 +94,29 @@ def trouble(result: Reconstruction) -> str | None:
     if grasp is None:
         return None
     bad = against(grasp)
-    return f"{bad[0][:-1]}; turn the approach or move the contact under \u201cTool\u201d" if bad else None
+    return f"{bad[0]} {free_text(result)} See \u201cTool\u201d" if bad else None
+
+
+def free_instead(result: Reconstruction | None) -> Place | None:
+    """Where the tool that is proposed would be free, when it is not where it is placed."""
+    grasp = grasp_in(result) if result is not None and isinstance(result.tool, ToolProposal) else None
+    return None if result is None or grasp is None or not against(grasp) else free_place_in(result)
+
+
+def free_text(result: Reconstruction) -> str:
+    """The nearest contact that is free instead of one that is not, or that there is none: a sentence."""
+    free = free_instead(result)
+    if free is None:
+        return "No contact along the axis is free from this side."
+    return f"The nearest free contact is {1000 * free.along_m:+.0f} mm along the axis."
 
 
 def tools_in_the_way(result: Reconstruction) -> dict[str, tuple[str, ...]]:
     """Of each tool that cannot be at the place of the contact why: a sentence each."""
     grasps = (grasp_in(result, tool) for tool in result.settings.tools)
     found = {grasp.tool.name: against(grasp) for grasp in grasps if grasp is not None}
-    return {name: lines for name, lines in found.items() if lines}
+    proposed = result.tool.tool.name if isinstance(result.tool, ToolProposal) else None
+    return {name: (*lines, free_text(result)) if name == proposed else lines for name, lines in found.items() if lines}
 
 
 def against(grasp: Grasp) -> tuple[str, ...]:

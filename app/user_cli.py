@@ -7,7 +7,17 @@ from typing import Annotated
 
 import typer
 
-from app.door.people import ROLES, PeopleError, Role, people_file, read_people, with_person, write_people
+from app.door.people import (
+    ROLES,
+    PeopleError,
+    Role,
+    check_name,
+    check_secret,
+    people_file,
+    read_people,
+    with_person,
+    write_people,
+)
 
 user = typer.Typer(no_args_is_help=True, help="Who may come in through the door: operators, watchers and robots.")
 Data = Annotated[
@@ -30,6 +40,7 @@ def add(
     """Add a user, or give one another role and secret; the secret is asked for, or read from stdin."""
     path = people_file(data)
     people = read_people(path)
+    check_name(name)
     write_people(path, with_person(people, name, role, _secret(name)))
     typer.echo(f"{'changed' if name in people else 'added'} {name}, {role}, in {path}")
 
@@ -56,10 +67,11 @@ def remove(name: Name, data: Data = None) -> None:
 
 
 def _secret(name: str) -> str:
-    """From a person twice and without echo, from a script once."""
+    """From a person twice and without echo, judged before it is asked for again; from a script once."""
     if not sys.stdin.isatty():
         return sys.stdin.readline().rstrip("\r\n")
     secret = getpass.getpass(f"Secret of {name}: ")
+    check_secret(secret)
     if getpass.getpass("The same again: ") != secret:
         raise PeopleError("the two secrets are not the same; try again")
     return secret

@@ -66,16 +66,26 @@ def grasp_of(result: Reconstruction, tool: Tool, place: Place | None = None) -> 
     fit, solid = result.fit, result.solid
     if not isinstance(fit, Fit) or solid is None or not result.readings:
         return None
-    frame = result.frame
     place = within(result.drawing.contact if place is None else place, solid)
-    contact = contact_on(solid, frame.T_base_camera[:3, 3], place)
+    contact, envelope = envelope_at(result, tool, place)
+    (clearance,) = clearances(result.readings, contact.point_m, fit.concave, (tool,), result.settings.dangerous)
+    at_contact, on_way = _hits(result, fit, envelope)
+    return Grasp(tool, place, contact, envelope, clearance, at_contact, on_way, unreachable(result, contact, envelope))
+
+
+def envelope_at(result: Reconstruction, tool: Tool, place: Place) -> tuple[Contact, Envelope]:
+    """The contact at a place of the measured solid, and the space that a tool takes there.
+
+    Raises ValueError where nothing was measured that has a reading.
+    """
+    solid = result.solid
+    if solid is None or not result.readings:
+        raise ValueError("there is no solid to put a tool to")
+    contact = contact_on(solid, result.frame.T_base_camera[:3, 3], place)
     # as much thicker as the middle may be, it may be here
     more_m = diameter_mm(result.readings[0])[1] / 1000 - 2 * float(solid.radius_at(0.0))
     diameter_m = 2 * float(solid.radius_at(place.along_m)) + max(more_m, 0.0)
-    envelope = envelope_of(tool, solid, contact, diameter_m)
-    (clearance,) = clearances(result.readings, contact.point_m, fit.concave, (tool,), result.settings.dangerous)
-    at_contact, on_way = _hits(result, fit, envelope)
-    return Grasp(tool, place, contact, envelope, clearance, at_contact, on_way, _unreachable(result, contact, envelope))
+    return contact, envelope_of(tool, solid, contact, diameter_m)
 
 
 def shown_tool(result: Reconstruction) -> Tool | None:
@@ -167,7 +177,7 @@ def _in_any(boxes: tuple[Box, ...], points_m: Floats) -> Bools:
     return np.any([box.holds(points_m) for box in boxes], axis=0)
 
 
-def _unreachable(result: Reconstruction, contact: Contact, envelope: Envelope) -> tuple[str, ...]:
+def unreachable(result: Reconstruction, contact: Contact, envelope: Envelope) -> tuple[str, ...]:
     """The arm's limits for the contact and for where the last part of the way begins."""
     places = {
         "the contact is": contact.point_m,

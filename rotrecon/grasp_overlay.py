@@ -9,7 +9,7 @@ from rotrecon.envelope import CORNERS, Box
 from rotrecon.frame import Frame
 from rotrecon.grasp import Grasp
 
-STEEL_COLOR, MOUTH_COLOR, HIT_COLOR, WAY_COLOR = (255, 255, 120), (0, 158, 115), (255, 60, 200), (230, 159, 0)
+STEEL_COLOR, MOUTH_COLOR, HIT_COLOR, WAY_COLOR = (252, 240, 96), (0, 158, 115), (255, 60, 200), (230, 159, 0)
 EDGES = [(a, b) for a in range(8) for b in range(a + 1, 8) if np.abs(CORNERS[a] - CORNERS[b]).sum() == 2]
 """Of the corners of a box, those that are joined."""
 EDGE_POINTS = 24

@@ -49,11 +49,12 @@ class Segmentation:
         freeze(self)
 
     def counts(self, row: int) -> dict[str, int]:
-        """How many pixels of one section each step of paper 3.2 removed, brought back and left."""
+        """How many pixels of one section have depth, and each step of paper 3.2 removed, brought back and left."""
         history, removed_in_run = self.history[row], self.removed_in_run[row]
         runs = {f"distant in run {run}": removed_in_run == run for run in range(1, removed_in_run.max(initial=1) + 1)}
         grown = PixelHistory.GROWN_FORWARD | PixelHistory.GROWN_BACKWARD
         steps = {
+            "with depth": history & PixelHistory.DEPTH > 0,
             **runs,
             "outlier": history & PixelHistory.OUTLIER > 0,
             "grown back": history & grown > 0,

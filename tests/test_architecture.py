@@ -46,7 +46,7 @@ JUDGED = """
 """.split()
 BY_RAYS = [*FITTED, *TURNED, *PHOTOMETRY, *JUDGED]
 SHOWN = """
-    clearance envelope grasp predicted_interval next_view answer curves overlay mesh line_stages residuals
+    clearance envelope grasp free_contact predicted_interval next_view answer curves overlay mesh line_stages residuals
     grasp_overlay distance
 """.split()
 ORDER = [*GIVEN, *MATCHED, *PROPOSED_AXIS, *SEGMENTED, *BY_SECTIONS, *BY_RAYS, "reconstruct", *SHOWN]

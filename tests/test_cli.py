@@ -1,19 +1,16 @@
+"""The command, as it is typed: measuring, simulating, importing."""
+
 import json
 import re
-import socket
-import sys
 from pathlib import Path
-from typing import Any, get_args
 
 import cv2
 import numpy as np
 import pytest
 
-from app.cli import main
 from rotrecon.frame import Frame
 from rotrecon.scene.reading import read_scene
 from rotrecon.scene.writing import SceneRecord, write_scene
-from rotrecon.settings import Method, Settings
 from rotrecon.simulation.simulate import simulate
 from rotrecon.simulation.truth import write_simulated
 from tests.exact import CAMERA
@@ -28,22 +25,6 @@ def scene(tmp_path_factory: pytest.TempPathFactory) -> Path:
     folder = tmp_path_factory.mktemp("scenes") / "pipe"
     write_simulated(folder, simulate("pipe", 3, supersampling=1))
     return folder
-
-
-@pytest.fixture
-def rotrecon(
-    monkeypatch: pytest.MonkeyPatch, capfd: pytest.CaptureFixture[str], tmp_path_factory: pytest.TempPathFactory
-):
-    monkeypatch.setenv("XDG_DATA_HOME", str(tmp_path_factory.mktemp("data")))
-
-    def run(*arguments: object) -> tuple[int, str, str]:
-        monkeypatch.setattr(sys, "argv", ["rotrecon", *map(str, arguments)])
-        with pytest.raises(SystemExit) as stop:
-            main()
-        out, err = capfd.readouterr()
-        return int(stop.value.code or 0), out, err
-
-    return run
 
 
 def drawing_of(scene: Path) -> list[str]:
@@ -234,74 +215,11 @@ def test_import_of_a_picture_with_depth(rotrecon, tmp_path):
         assert not (tmp_path / "other").exists()
 
 
-def test_serve_opens_views_with_coarse_depth(rotrecon, monkeypatch):
-    served: list[tuple[Frame, tuple[str, ...]]] = []
-    monkeypatch.setattr("app.serving.serve", lambda frame, *_, notes, **__: served.append((frame, notes)))
-    assert rotrecon("serve", recording("virtual_stereo"))[0] == 0
-    frame, notes = served[0]
-    assert frame.stereo.scale == 0.5
-    assert np.isfinite(frame.depth_m).mean() > 0.8
-    assert any("Matched from 2 views" in note for note in notes)
-
-
-def test_serve_refuses_views_that_cannot_be_matched_with_their_reason(rotrecon, tmp_path):
-    code, _, err = rotrecon("serve", save(tmp_path, with_views({}, {})))
-    assert code == 3
-    assert "move the camera sideways" in err
-
-
 def test_a_method_is_one_of_those_there_are(rotrecon, scene):
     for command in (["serve", scene], ["fit", scene, *drawing_of(scene)]):
         code, _, err = rotrecon(*command, "--method", "guess")
         assert code == 2
         assert "guess" in err
-
-
-def test_serve_marks_classes_dangerous_and_keeps_a_record(rotrecon, scene, tmp_path, monkeypatch):
-    served: list[dict[str, Any]] = []
-    monkeypatch.setattr("app.serving.serve", lambda *_, **options: served.append(options))
-    assert rotrecon("serve", scene, "--dangerous", "cone", "--dangerous", "sphere", "--data", tmp_path)[0] == 0
-    assert served[0]["deciding"].dangerous == {"cone", "sphere"}
-    assert served[0]["record"].folder == tmp_path
-    code, _, err = rotrecon("serve", scene, "--dangerous", "bomb")
-    assert code == 2
-    assert "bomb is no class" in err
-
-
-def test_serve_measures_by_the_method_that_is_given(rotrecon, scene, monkeypatch):
-    served: list[Settings] = []
-    monkeypatch.setattr("app.serving.serve", lambda frame, name, settings, *_, **__: served.append(settings))
-    for method in get_args(Method):
-        assert rotrecon("serve", scene, "--method", method)[0] == 0
-    assert [settings.method for settings in served] == list(get_args(Method))
-
-
-def test_serve_refuses_a_host_that_is_not_this_machine(rotrecon, scene):
-    for host in ("nonsense.invalid", "203.0.113.5"):
-        code, _, err = rotrecon("serve", scene, "--host", host)
-        assert code == 2
-        assert host in err
-        assert err.count("\n") == 1
-
-
-def test_serve_refuses_what_is_not_guarded_and_half_a_certificate(rotrecon, scene, tmp_path):
-    code, _, err = rotrecon("serve", scene, "--host", "0.0.0.0", "--data", tmp_path)
-    assert code == 2
-    assert "rotrecon user add" in err
-    assert "--certificate" in err
-    code, _, err = rotrecon("serve", scene, "--certificate", tmp_path / "cert.pem")
-    assert code == 2
-    assert "--key" in err
-
-
-def test_serve_refuses_a_port_that_is_taken(rotrecon, scene):
-    with socket.socket() as taken:
-        taken.bind(("127.0.0.1", 0))
-        taken.listen()
-        code, _, err = rotrecon("serve", scene, "--port", taken.getsockname()[1])
-    assert code == 2
-    assert "give another one with --port" in err
-    assert err.count("\n") == 1
 
 
 def test_fit_proposes_the_axis_that_is_left_out_and_says_so(rotrecon, scene):

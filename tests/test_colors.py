@@ -1,4 +1,4 @@
-"""Colours that tell things apart do so for people who see no red or no green: computed, not judged by eye."""
+"""Colours that tell things apart do so for people who see no red, no green or no blue: computed, not judged by eye."""
 
 import re
 from itertools import combinations
@@ -7,9 +7,12 @@ import cv2
 import numpy as np
 import pytest
 
+from app import scene_view
 from app.camera_view import AREA_COLOR, AXIS_COLOR
 from app.charts import EXCLUDED, LIT, MISSING, ODD, USED
+from app.envelope_view import TOOL_COLOR
 from app.pictures import BACK_COLOR, GONE_COLOR, KEPT_COLOR, RULER_COLOR, SECTION_COLOR
+from app.scene_view import FRUSTUM_COLOR, LIMITS_COLOR, OBJECT_COLOR
 from app.static_files import static_text
 from rotrecon.grasp_overlay import HIT_COLOR, MOUTH_COLOR, STEEL_COLOR, WAY_COLOR
 from rotrecon.overlay import LATER_RUN, LIGHT_BLUE, NAVY, OUTLINE_COLOR, RED, YELLOW
@@ -23,6 +26,9 @@ SEEN_BY = {
     ),
     "deuteranopia": np.array(
         [[0.367322, 0.860646, -0.227968], [0.280085, 0.672501, 0.047413], [-0.011820, 0.042940, 0.968881]]
+    ),
+    "tritanopia": np.array(
+        [[1.255528, -0.076749, -0.178779], [-0.078411, 0.930809, 0.147602], [0.004733, 0.691367, 0.303900]]
     ),
 }
 """What becomes of linear RGB: Machado, Oliveira and Fernandes, A Physiologically-based Model for Simulation of Color
@@ -62,16 +68,36 @@ SETS: dict[str, dict[str, Color]] = {
         "tool": STEEL_COLOR,
         "mouth": MOUTH_COLOR,
     },
+    "in the 3D view": {
+        "object": OBJECT_COLOR,
+        "axis": scene_view.AXIS_COLOR,
+        "tool": TOOL_COLOR,
+        "mouth": MOUTH_COLOR,
+        "hit": HIT_COLOR,
+        "section": scene_view.SECTION_COLOR,
+        "limits": LIMITS_COLOR,
+    },
     "pixels on the picture": {"hit": HIT_COLOR, "on the way": WAY_COLOR, "section": SECTION_COLOR},
     "states": {rule: bar_of(rule) for rule in (".rr-hint", ".rr-sure", ".rr-unsure", ".rr-armed", ".rr-out")},
 }
 
+BACKGROUNDS: dict[str, Color] = {"light": (255, 255, 255), "dark": (20, 20, 20)}
+"""Of viser's 3D view: white, and the darkest grey of the palette that it is built with."""
+LUMINANCE = np.array([0.2126, 0.7152, 0.0722])
+"""Of linear RGB."""
+LEAST_CONTRAST = 3.0
+"""Of what a person has to make out beside text: WCAG 2.1, 1.4.11."""
+
+
+def linear_of(color: Color) -> np.ndarray:
+    """Linear RGB of a colour of sRGB (IEC 61966-2-1)."""
+    share = np.array(color) / 255
+    return np.where(share <= 0.04045, share / 12.92, ((share + 0.055) / 1.055) ** 2.4)
+
 
 def lab(color: Color, seen: np.ndarray) -> np.ndarray:
-    """CIELAB of a colour of sRGB (IEC 61966-2-1) as it is seen."""
-    share = np.array(color) / 255
-    linear = np.where(share <= 0.04045, share / 12.92, ((share + 0.055) / 1.055) ** 2.4)
-    linear = np.clip(seen @ linear, 0, 1)
+    """CIELAB of a colour as it is seen."""
+    linear = np.clip(seen @ linear_of(color), 0, 1)
     again = np.where(linear <= 0.0031308, 12.92 * linear, 1.055 * linear ** (1 / 2.4) - 0.055)
     return cv2.cvtColor(again.astype(np.float32)[None, None], cv2.COLOR_RGB2LAB)[0, 0]
 
@@ -82,6 +108,14 @@ def test_colors_that_mean_different_things_look_different(name: str, who: str) -
     for (one, first), (other, second) in combinations(SETS[name].items(), 2):
         apart = float(np.linalg.norm(lab(first, SEEN_BY[who]) - lab(second, SEEN_BY[who])))
         assert apart >= LEAST, f"{one} and {other}: {apart:.1f}"
+
+
+@pytest.mark.parametrize("page", BACKGROUNDS)
+@pytest.mark.parametrize("name", [*SETS["in the 3D view"], "camera"])
+def test_what_stands_in_the_3d_view_stands_out_from_a_light_page_and_a_dark_one(name: str, page: str) -> None:
+    color = {**SETS["in the 3D view"], "camera": FRUSTUM_COLOR}[name]
+    low, high = sorted(linear_of(one) @ LUMINANCE for one in (color, BACKGROUNDS[page]))
+    assert (high + 0.05) / (low + 0.05) >= LEAST_CONTRAST
 
 
 def test_the_simulation_confuses_what_is_confused_and_keeps_greys() -> None:

@@ -183,6 +183,9 @@ def test_a_console_that_is_started_again_has_its_drawing_and_nothing_decided(sce
         before = console.session
         assert before.reconstruction is not None
         console.stop()
+        assert console.told.decision.case is None, "nothing to be told to a robot any more"
+        last = record.entry(record.head.id).content
+        assert (last["kind"], last["payload"]["reason"]) == ("voided", "the console was closed")
 
         console = started(scene, tmp_path, record)
         after = console.session

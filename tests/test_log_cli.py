@@ -3,10 +3,12 @@
 import json
 import sys
 from contextlib import closing
+from dataclasses import replace
 from pathlib import Path
 
 import platformdirs
 import pytest
+from msgspec import structs
 
 from app.cli import main
 from app.record.entries import Entry
@@ -15,7 +17,7 @@ from app.record.store import FILE, Record
 from rotrecon.reconstruct import reconstruct
 from rotrecon.settings import Settings
 from tests.exact import cylinder, drawing_along, exact_frame
-from tests.test_record import tampered
+from tests.records import tampered
 
 SOLID = cylinder([0.0, 0.0, 0.9], [0.1, 1.0, 0.2], 0.06)
 
@@ -27,7 +29,8 @@ def data(tmp_path_factory: pytest.TempPathFactory) -> Path:
     with closing(Record.open(folder)) as record:
         entry = proposal("ann", frame, drawing, Settings(), reconstruct(frame, drawing, Settings()))
         record.append(entry, frame)
-        record.append(Entry("rejected", "bob", entry.digest, {"reason": "a hand is in the way"}))
+        said = {"tool": "mechanical cutter", "reason": "a hand is in the way"}
+        record.append(Entry("rejected", "bob", entry.digest, said))
         record.append(Entry("declined", "eve"))
     return folder
 
@@ -49,7 +52,9 @@ def test_list_shows_every_entry_and_the_head(rotrecon, data):
     lines = out.splitlines()
     assert code == 0
     assert [line.split()[2] for line in lines[:3]] == ["proposal", "rejected", "declined"]
-    assert "ann: cylinder 60.0 mm, mechanical cutter" in lines[0]
+    assert "  mechanical cutter   ann: cylinder 60.0 mm" in lines[0]
+    assert lines[1].endswith("  mechanical cutter   bob: a hand is in the way")
+    assert lines[2].endswith("  -                   eve")
     assert lines[3].startswith("head 3:")
     _, out, _ = rotrecon("log", "list", "--data", data, "--kind", "rejected")
     assert [line.split()[0] for line in out.splitlines()] == ["2", "head"]
@@ -58,6 +63,21 @@ def test_list_shows_every_entry_and_the_head(rotrecon, data):
     code, _, err = rotrecon("log", "list", "--data", data, "--kind", "guess")
     assert code == 2
     assert "proposal" in err
+
+
+def test_a_line_names_the_tool_and_why_there_is_none_and_is_never_long(rotrecon, tmp_path):
+    frame, drawing = exact_frame(SOLID), drawing_along(SOLID)
+    tight = replace(Settings(), tools=tuple(structs.replace(tool, diameter_mm=(1.0, 2.0)) for tool in Settings().tools))
+    with closing(Record.open(tmp_path)) as record:
+        record.append(proposal("ann", frame, drawing, tight, reconstruct(frame, drawing, tight)), frame)
+        record.append(Entry("overridden", "bob " * 20, None, {"tool": "t" * 40, "override": "first\nsecond " * 40}))
+    _, out, _ = rotrecon("log", "list", "--data", tmp_path)
+    refused, long, head = out.splitlines()
+    assert "refusal" in refused
+    assert "  -                   ann: mechanical cutter: takes 1 to 2 mm" in refused
+    assert f"  {17 * 't'}…  bob" in long
+    assert max(len(refused), len(long)) <= 120
+    assert head.startswith("head 2:")
 
 
 def test_show_says_what_is_in_an_entry(rotrecon, data):

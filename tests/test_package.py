@@ -83,6 +83,24 @@ def test_installed_console_answers(installed, tmp_path):
             console.terminate()
 
 
+@pytest.mark.parametrize(
+    ("given", "runs"),
+    [
+        ((), "serve"),
+        (("SCENE=a",), "serve a"),
+        (("PORT=8090",), "serve --port 8090"),
+        (("SCENE=a", "PORT=8090"), "serve a --port 8090"),
+    ],
+)
+def test_make_run_opens_a_scene_on_a_port(given, runs):
+    outside = {name: value for name, value in os.environ.items() if not name.startswith("MAKE")}  # of `make test`
+    environment = {**outside, "PORT": "1"}  # another program's, as many shells have it
+    said = subprocess.run(
+        ["make", "--dry-run", "run", *given], cwd=ROOT, capture_output=True, text=True, check=True, env=environment
+    )
+    assert said.stdout.splitlines()[-1].split()[1:] == runs.split()
+
+
 def test_dependencies_are_pinned_by_name_and_version_alone():
     constraints = (ROOT / "constraints.txt").read_text().split()
     assert all("==" in line and "/" not in line for line in constraints)

@@ -69,11 +69,21 @@ def read_people(path: Path) -> Mapping[str, Person]:
 
 def with_person(people: Mapping[str, Person], name: str, role: Role, secret: str) -> Mapping[str, Person]:
     """The people with one more, or with another secret for one who is there. Raises PeopleError with what to do."""
+    check_name(name)
+    check_secret(secret)
+    return MappingProxyType({**people, name: Person(role, HASHER.hash(secret))})
+
+
+def check_name(name: str) -> None:
+    """Raise PeopleError for what cannot be a name."""
     if not name or len(name) > LONGEST_NAME or not name.isprintable() or ":" in name or name != name.strip():
         raise PeopleError(f"{name!r} cannot be a name; use up to {LONGEST_NAME} printable characters without a colon")
+
+
+def check_secret(secret: str) -> None:
+    """Raise PeopleError for what cannot be a secret."""
     if not SHORTEST_SECRET <= len(secret) <= LONGEST_SECRET:
         raise PeopleError(f"the secret has {len(secret)} characters; use {SHORTEST_SECRET} to {LONGEST_SECRET}")
-    return MappingProxyType({**people, name: Person(role, HASHER.hash(secret))})
 
 
 def write_people(path: Path, people: Mapping[str, Person]) -> None:

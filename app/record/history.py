@@ -1,6 +1,6 @@
 """The record as a list to look through: newest first, each entry with what it was about, found by kind and words."""
 
-from collections.abc import Collection
+from collections.abc import Collection, Mapping
 from dataclasses import dataclass, field, replace
 from functools import lru_cache
 from typing import Any
@@ -108,17 +108,22 @@ class History:
         about = _measurement(self._record.entries(digest=content["digest"]), number) if content["digest"] else {}
         said = said_with(written)
         answer = about.get("answer")
-        words = (said.get(name) for name in ("override", "reason", "in_the_way", "action"))
         return Line(
             number,
             content["kind"],
             content["who"],
             content["when"],
-            "; ".join(str(word) for word in words if word),
+            why(said),
             said.get("tool") or (answer or {}).get("tool"),
             answer,
             about.get("picture"),
         )
+
+
+def why(said: Mapping[str, Any]) -> str:
+    """Why something was done or declined, of what an entry says."""
+    words = (said.get(name) for name in ("override", "reason", "in_the_way", "action"))
+    return "; ".join(str(word) for word in words if word)
 
 
 def _measurement(entries: Collection[Written], number: int) -> dict[str, Any]:

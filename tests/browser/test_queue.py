@@ -14,10 +14,11 @@ from app.bench.wire import WirePage
 from app.clock import seconds
 from app.console import Console
 from app.console_items import FromPage, PageClosed, PageOpened
-from app.deciding.events import ControlTaken, PageCame
+from app.deciding.events import ArmPressed, ControlTaken, DecisionEvent, PageCame
 from app.events import Event, HandleMoved, PointerDragged, Refused
 from app.hints import hint
 from app.measuring import measure
+from app.scene_view import FAINT_OPACITY, SOLID_OPACITY
 from app.session import Session
 from rotrecon.drawing import Drawing
 from rotrecon.frame import Frame
@@ -57,7 +58,7 @@ def slow(monkeypatch: pytest.MonkeyPatch) -> Iterator[SlowMeasure]:
     slow.end()
 
 
-def post(console: Console, *events: Event) -> None:
+def post(console: Console, *events: Event | DecisionEvent) -> None:
     for event in (PageCame(seconds(), NOBODYS, "Ann"), ControlTaken(seconds(), NOBODYS), *events):
         console.server.get_event_loop().call_soon_threadsafe(console.post, FromPage(NOBODYS, event))
 
@@ -130,6 +131,33 @@ def test_a_measurement_is_shown_while_it_lasts(
     assert "Measured 1." in hints[-1]
 
 
+def test_a_solid_that_a_newer_one_will_replace_is_hardly_seen_and_cannot_be_decided_on(
+    console: Console, scene: Simulated, request: pytest.FixtureRequest
+) -> None:
+    columns, rows = zip(*scene.drawing.area.vertices_px, strict=True)
+    post(console, PointerDragged((min(columns), min(rows)), (max(columns), max(rows))))
+    console.wait_until_idle(WAIT_S)
+    assert shown(console) == (SOLID_OPACITY, True, True)
+    case = console.session.decision.case
+    assert case is not None
+    slow: SlowMeasure = request.getfixturevalue("slow")
+    end = scene.drawing.axis.end_px
+    post(console, HandleMoved("axis", 1, (end[0] + 3.0, end[1])))
+    until(lambda: shown(console) == (FAINT_OPACITY, False, False))
+    assert console.told.reconstruction is not None, "still that of the drawing before"
+    assert console.told.decision.case is None
+    post(console, ArmPressed(seconds(), NOBODYS, case.number))
+    until(lambda: any("Nothing is proposed" in said.text for said in console.told.decision.said))
+    slow.end()
+    console.wait_until_idle(WAIT_S)
+
+
+def shown(console: Console) -> tuple[float, bool, bool]:
+    """How solid the solid is, and whether its points, and its axis with the tool, are there."""
+    node = console.server.scene.get_handle_by_name
+    return node("/world/solid").opacity, node("/world/object").visible, node("/world/marks").visible
+
+
 def test_the_programs_own_mistake_is_told_and_not_the_end(
     console: Console, monkeypatch: pytest.MonkeyPatch, caplog: pytest.LogCaptureFixture
 ) -> None:
@@ -196,7 +224,7 @@ def test_a_page_that_closes_before_it_is_built_does_not_stay(console: Console) -
 def test_a_mistake_in_showing_is_logged_and_not_the_end(
     console: Console, broken: str, monkeypatch: pytest.MonkeyPatch, caplog: pytest.LogCaptureFixture
 ) -> None:
-    def fail(*_: object) -> None:
+    def fail(*_: object, **__: object) -> None:
         raise ZeroDivisionError
 
     with monkeypatch.context() as patched:

@@ -20,6 +20,7 @@ from app.deciding.step import decide
 from app.deciding.watchdog import FrameFacts
 from app.record.entries import Entry
 
+WHY = "the cutter is blunt today"
 ANN, BOB = 1, 2
 WALL_S = 1.8e9
 TICK_S = 0.1

@@ -4,7 +4,7 @@ from dataclasses import replace
 
 from hypothesis import settings
 from hypothesis import strategies as st
-from hypothesis.stateful import RuleBasedStateMachine, initialize, rule
+from hypothesis.stateful import rule
 
 from app.deciding.events import (
     AreaCompared,
@@ -14,7 +14,6 @@ from app.deciding.events import (
     ControlAsked,
     ControlGiven,
     ControlTaken,
-    DecisionEvent,
     FrameArrived,
     FrameOpened,
     FrameReopened,
@@ -32,15 +31,13 @@ from app.deciding.events import (
     Voided,
     Written,
 )
-from app.deciding.settings import DecisionSettings
-from app.deciding.states import Armed, Decided, Deciding
-from app.deciding.step import decide
+from app.deciding.states import Deciding
 from app.deciding.watchdog import FrameFacts
 from app.record.entries import Entry
 from tests.deciding.desk import OFFER, WALL_S, offer
+from tests.deciding.watched import Watched
 
 FEW = settings(max_examples=150, stateful_step_count=40, deadline=None)
-LIMITS = DecisionSettings(arm_s=10.0, answer_s=3.0, silent_s=20.0, valid_s=30.0, max_age_s=200.0)
 REASON = "a hand is in the way"
 PAGES = st.integers(0, 2)
 MOSTLY_0 = st.sampled_from([0, 0, 0, 0, 1, 2])
@@ -49,96 +46,8 @@ BACK = st.integers(0, 2)
 """How many proposals ago."""
 
 
-class Machine(RuleBasedStateMachine):
-    """Pages, a camera, a disk and a clock that do what they like, beside what may follow from it."""
-
-    @initialize(dangerous=st.booleans())
-    def start(self, dangerous: bool) -> None:
-        """The program starts."""
-        limits = DecisionSettings(**{**vars(LIMITS), "dangerous": frozenset({"cylinder"} if dangerous else ())})
-        self.deciding, self.now, self.count, self.digest = Deciding(limits), 0.0, 0, ""
-        self.confirmed = 0
-        self._forget()
-        self.do(FrameOpened(self.now, FrameFacts("held"), WALL_S))
-        self.do(PageCame(self.now, 0, "page 0"))
-        self.do(ControlTaken(self.now, 0))
-
-    def _forget(self) -> None:
-        self.presses: set[tuple[int, int, float]] = set()
-        """Page, proposal and time of every press of ARM."""
-        self.ticks: list[tuple[int, int, float]] = []
-        self.came: dict[int, float] = {}
-        self.pictured: set[tuple[int, int]] = set()
-
-    def do(self, event: DecisionEvent) -> None:
-        before = self.deciding
-        self._note(event)
-        self.deciding = decide(before, event)
-        self._check(before, event, self.deciding)
-
-    def _note(self, event: DecisionEvent) -> None:
-        match event:
-            case ArmPressed():
-                self.presses.add((event.page, event.number, event.at))
-            case HoldTicked():
-                self.ticks.append((event.page, event.number, event.at))
-            case PicturesSent():
-                self.pictured.add((event.page, event.number))
-            case PageCame():
-                self.came.setdefault(event.page, event.at)
-            case PageWent():
-                self.came.pop(event.page, None)
-            case _:
-                pass
-
-    def _check(self, before: Deciding, event: DecisionEvent, after: Deciding) -> None:
-        assert after.control.holder is None or after.now - after.control.heard <= LIMITS.silent_s
-        was = None if before.case is None else before.case.stage
-        now = None if after.case is None else after.case.stage
-        if isinstance(now, Armed):
-            self._check_armed(before, event, after, now, fresh=now != was)
-        if isinstance(now, Decided) and now != was:
-            self._check_decided(before, event, after, now)
-
-    def _check_armed(self, before: Deciding, event: DecisionEvent, after: Deciding, now: Armed, fresh: bool) -> None:
-        assert after.case is not None
-        page = now.page
-        assert (page, after.case.number, now.since) in self.presses
-        assert page == after.control.holder
-        assert page in self.came, "the page that armed it is open"
-        assert now.since >= self.came[page], "and has been since"
-        assert after.now <= now.since + LIMITS.arm_s
-        assert after.case.offer.digest == self.digest
-        assert after.fault is None
-        assert (page, after.case.number) in self.pictured
-        assert after.case.override is not None or not after.case.in_the_way
-        assert not fresh or isinstance(event, ArmPressed)
-
-    def _check_decided(self, before: Deciding, event: DecisionEvent, after: Deciding, now: Decided) -> None:
-        assert isinstance(event, HoldTicked)
-        assert before.case is not None
-        assert after.case is not None
-        assert isinstance(before.case.stage, Armed), "what is confirmed was armed"
-        assert before.control.holder == before.case.stage.page == event.page == now.page
-        assert before.case.number == after.case.number == event.number
-        assert after.case.offer.digest == self.digest, "on the evidence as it is"
-        assert (now.how == "overridden") == (after.case.override is not None)
-        since = before.case.stage.since
-        assert (event.page, event.number, since) in self.presses
-        assert event.at <= since + LIMITS.arm_s, "within its time"
-        run = [event.at]
-        for by, number, then in reversed(self.ticks[:-1]):
-            if (by, number) != (event.page, event.number) or run[-1] - then > LIMITS.hold_gap_s or then < since:
-                break
-            run.append(then)
-        assert len(run) >= LIMITS.hold_ticks
-        assert run[0] - run[-1] >= LIMITS.hold_s
-        assert after.outbox[-1].kind == now.how, "to be written before anybody is told"
-        assert after.outbox[-1].digest == self.digest
-        self.confirmed += 1
-
-    def _number(self, back: int) -> int:
-        return max(self.deciding.count - back, 1)
+class Machine(Watched):
+    """Pages, a camera, a disk and a clock that do what they like."""
 
     @rule(page=PAGES)
     def comes(self, page: int) -> None:

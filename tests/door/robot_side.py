@@ -29,6 +29,12 @@ NOBODYS = -1
 DRAWN = (PointerDragged((130.0, 40.0), (190.0, 200.0)), PointerDragged((160.0, 60.0), (160.0, 180.0), shift=True))
 
 
+def post(console: Console, *events: Event) -> None:
+    """Have events come from a page that is in control."""
+    for event in (PageCame(seconds(), NOBODYS, "Ann"), ControlTaken(seconds(), NOBODYS), *events):
+        console.server.get_event_loop().call_soon_threadsafe(console.post, FromPage(NOBODYS, event))
+
+
 class Cell:
     """A console behind a door, with the robot's side."""
 
@@ -51,8 +57,7 @@ class Cell:
         return connect(uri, additional_headers=headers, proxy=None)
 
     def post(self, *events: Event) -> None:
-        for event in (PageCame(seconds(), NOBODYS, "Ann"), ControlTaken(seconds(), NOBODYS), *events):
-            self.console.server.get_event_loop().call_soon_threadsafe(self.console.post, FromPage(NOBODYS, event))
+        post(self.console, *events)
 
     def do(self, *events: Event) -> None:
         self.post(*events)

@@ -114,11 +114,13 @@ def test_a_secret_is_asked_for_twice_and_without_echo(monkeypatch: pytest.Monkey
             return True
 
     monkeypatch.setattr(sys, "stdin", Terminal())
-    answers = iter([SECRET, SECRET, SECRET, "another one"])
+    answers = iter([SECRET, SECRET, SECRET, "another one", "short"])
     monkeypatch.setattr("getpass.getpass", lambda _: next(answers))
     assert _secret("Anna") == SECRET
     with pytest.raises(PeopleError, match="not the same"):
         _secret("Anna")
+    with pytest.raises(PeopleError, match="10 to 1024"):
+        _secret("Anna")  # before it is asked for again
 
 
 def test_a_pass_is_signed_and_runs_out(monkeypatch: pytest.MonkeyPatch) -> None:
