@@ -11,8 +11,6 @@ from rotrecon.camera import PinholeCamera
 from rotrecon.frame import View
 from rotrecon.stereo.rectification import Rectification
 
-STRIP_ROWS = 64
-"""Rows of a picture worked on at once: temporaries stay small beside the pictures."""
 DISPARITY_STEP = 16
 """The matcher looks for a multiple of so many disparities."""
 UNSEEN_PX = 1e-6
@@ -97,11 +95,6 @@ def beyond(picture: Bytes) -> Bytes:
     """(h, w) above 0 where nothing was recorded: rectified and undistorted pictures are black beyond their borders."""
     black = cv2.inRange(picture, np.zeros(1), np.zeros(1))
     return np.asarray(cv2.morphologyEx(black, cv2.MORPH_OPEN, BORDER_OPENING), dtype=np.uint8)
-
-
-def strips(start: int, end: int) -> list[tuple[int, int]]:
-    """Rows from start to end, cut into strips."""
-    return [(top, min(top + STRIP_ROWS, end)) for top in range(start, end, STRIP_ROWS)]
 
 
 def canvas_over(pair: Rectification, box: Box, scale: float, inverse_depths: tuple[float, float]) -> Canvas:

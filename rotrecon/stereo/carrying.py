@@ -3,8 +3,8 @@
 import cv2
 import numpy as np
 
-from rotrecon.arrays import Bytes, Cloud, Floats
-from rotrecon.stereo.canvas import Box, Canvas, strips
+from rotrecon.arrays import Bytes, Cloud, Floats, strips
+from rotrecon.stereo.canvas import Box, Canvas
 
 ONE_SURFACE_PX = 1.0
 """Disparities of neighbouring pixels that differ more are of two surfaces, or of one too slanted to interpolate."""
@@ -21,7 +21,7 @@ def inverse_depths(canvas: Canvas, disparity: Cloud, box: Box, step_px: int = 1)
     left, top, right, bottom = box
     u, v = np.arange(left, right, step_px, dtype=np.float64), np.arange(top, bottom, step_px, dtype=np.float64)
     found = np.empty((len(v), len(u)), dtype=np.float32)
-    for first, last in strips(0, len(v)):
+    for first, last in strips(len(v)):
         found[first:last] = _strip(canvas, disparity, broken, u, v[first:last, None])
     return found
 
@@ -29,7 +29,7 @@ def inverse_depths(canvas: Canvas, disparity: Cloud, box: Box, step_px: int = 1)
 def _broken(disparity: Cloud, step_px: float) -> Bytes:
     """(h, w) 1 where a pixel and its neighbours span more than a step, or lie beyond the border."""
     broken = np.empty(disparity.shape, dtype=np.uint8)
-    for top, bottom in strips(0, len(disparity)):
+    for top, bottom in strips(len(disparity)):
         above = min(top, 1)
         part = disparity[top - above : bottom + 1]
         spread = np.asarray(cv2.subtract(cv2.dilate(part, NEIGHBOURS), cv2.erode(part, NEIGHBOURS)))
