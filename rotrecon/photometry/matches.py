@@ -65,16 +65,16 @@ def matches_of(
 
 def _match(surface: Surface, patch: Patch, grey: Floats, among: Bools, other: Other, most: int) -> Match | None:
     pixels = np.flatnonzero(among).astype(np.int32)
-    pixels = pixels[seen_too(surface, patch.rays[:, pixels], other.carrier)]
+    pixels = pixels[seen_too(surface, np.ascontiguousarray(patch.rays[:, pixels]), other.carrier)]
     if len(pixels) < FEWEST_PIXELS:
         return None
-    rays = patch.rays[:, pixels]
-    place_px, _ = other.carrier.carried(rays, surface.trace(rays).depth_m)
+    rays = np.ascontiguousarray(patch.rays[:, pixels])
+    place_px, _ = other.carrier.carried(rays, surface.meet(rays)[0])
     spline = spline_of(other.view.image, place_px.min(axis=1), place_px.max(axis=1), SMOOTHING_PX)
     pixels = spread(pixels[spline.within(place_px)], most)
     if len(pixels) < FEWEST_PIXELS:
         return None
-    rays = patch.rays[:, pixels]
+    rays = np.ascontiguousarray(patch.rays[:, pixels])
     shades = shades_of(outward(surface, rays * surface.meet(rays)[0]))
     agreement = Agreement(rays, grey[pixels], shades, spline, other.carrier)
     residual = agreement.predict(surface).residual

@@ -12,7 +12,6 @@ from rotrecon.photometry.climbing import DEPTH_SHARE, PLAIN, Climbed, climb, mov
 from rotrecon.photometry.drawn import drawn, half_width_px
 from rotrecon.photometry.matches import FEWEST_PIXELS, Other
 from rotrecon.photometry.scanning import TILTS_RAD, scanned
-from rotrecon.photometry.sharpening import sharpened
 from rotrecon.photometry.sureness import covariance_of, sigma_by_outline
 from rotrecon.photometry.visible import clear_of
 from rotrecon.rays.ball import Ball
@@ -170,14 +169,15 @@ def _shape(one: Refinement) -> Shape:
 def _finished(one: Ranked, fit: RayFit, climbed: Climbed, scene: Scene, *, by_depth: bool) -> Refinement:
     """What is known once a surface has come to its end, from where matched depth has it or from elsewhere."""
     patch, surface = scene.patch, climbed.surface
-    covariance = covariance_of(surface, climbed.matches, climbed.edges, climbed.free, patch.shape)
-    depth_m, known, agreeing = sharpened(surface, patch, climbed.pixels, climbed.matches)
-    textured = float(known.sum() / max(climbed.pixels.sum(), 1))
+    sharp = climbed.sharpened
+    depth_m, known, textured = sharp.depth_m, sharp.known, sharp.textured
+    matches = tuple(zip(climbed.matches, sharp.changes, strict=True))
+    covariance = covariance_of(surface, matches, climbed.edges, climbed.free, patch.shape)
     if not by_depth:
         # what was matched is known to be wrong; without texture, what agrees is where the surface says it is
-        trace = surface.trace(patch.rays)
-        there = known if textured > TEXTURED else known | agreeing
-        depth_m = np.where(there & ~known, trace.depth_m, np.where(trace.hit & ~known, np.nan, depth_m))
+        seen_m, hit = surface.meet(patch.rays)
+        there = known if textured > TEXTURED else known | sharp.agreeing
+        depth_m = np.where(there & ~known, seen_m, np.where(hit & ~known, np.nan, depth_m))
         fit = replace(fit, pixels=np.flatnonzero(there).astype(np.int32), sigma=1.0, likeness=Likeness(0.0, 0.0))
     pixels, sight = fit.pixels, fit.sight
     if known.sum() > max(SHARP_SHARE * len(pixels), FEWEST_PIXELS):
