@@ -6,6 +6,7 @@ import cv2
 import numpy as np
 
 from rotrecon.arrays import Bools, Bytes, Cloud, Floats
+from rotrecon.compiled import MATRIX, compiled
 from rotrecon.photometry.carrying import Carrier
 from rotrecon.photometry.matches import FEWEST_PIXELS, Other
 from rotrecon.photometry.splines import smoothed, smoothing_reach
@@ -68,16 +69,24 @@ def _places(rays: Rays, depth_m: Floats, scales: Floats, carrier: Carrier) -> Fl
 
 def _picture_about(image: Bytes, places_px: list[Floats]) -> tuple[Cloud, Cloud]:
     """First pixel (2,) and smoothed grey values (h, w) of the part of a picture that places (2, ...) lie in."""
-    last = np.array(image.shape[1::-1]) - 1.0
-    within = [np.clip(place.reshape(2, -1), 0.0, last[:, None]) for place in places_px]
-    known = np.concatenate([place[:, np.isfinite(place).all(axis=0)] for place in within], axis=1)
-    if known.size == 0:
-        return np.zeros(2, dtype=np.float32), np.zeros((1, 1), dtype=np.float32)
+    last = np.array(image.shape[1::-1]) - 1
+    ends = np.array([_extent(np.ascontiguousarray(place.reshape(2, -1))) for place in places_px])
     reach = smoothing_reach(SMOOTHING_PX) + 1
-    low = np.maximum(np.floor(known.min(axis=1)) - reach, 0.0).astype(np.int64)
-    high = np.minimum(np.ceil(known.max(axis=1)) + reach, last).astype(np.int64) + 1
+    low = np.clip(np.floor(ends[:, 0].min(axis=0)) - reach, 0, last).astype(np.int64)
+    high = np.clip(np.ceil(ends[:, 1].max(axis=0)) + reach, low, last).astype(np.int64) + 1
     grey = smoothed(image[low[1] : high[1], low[0] : high[0]], SMOOTHING_PX)
     return low.astype(np.float32), grey.astype(np.float32)
+
+
+@compiled(MATRIX)
+def _extent(place_px: Floats) -> tuple[tuple[float, float], tuple[float, float]]:
+    """Smallest and largest coordinates of those of some places (2, N) that are known; infinite where there are none."""
+    low_u, low_v, high_u, high_v = np.inf, np.inf, -np.inf, -np.inf
+    for i in range(place_px.shape[1]):
+        u, v = place_px[0, i], place_px[1, i]
+        if not (np.isnan(u) or np.isnan(v)):
+            low_u, low_v, high_u, high_v = min(low_u, u), min(low_v, v), max(high_u, u), max(high_v, v)
+    return (low_u, low_v), (high_u, high_v)
 
 
 def _sampled(picture: Cloud, place_px: Cloud) -> Floats:

@@ -47,7 +47,7 @@ def sharpened(surface: Surface, patch: Patch, among: Bools, matches: tuple[Match
 
     One step of Lucas and Kanade (1981) from the surface's own prediction, over all views at once.
     """
-    pull, hold, noise, believed, seen = np.zeros((5, *patch.shape))
+    totals = np.zeros((5, len(patch.drawn)))
     changes = tuple(match.agreement.along_rays(surface) for match in matches)
     for match, change in zip(matches, changes, strict=True):
         scaled, slope = change.residual / match.sigma, change.by_depth / match.sigma
@@ -55,8 +55,9 @@ def sharpened(surface: Surface, patch: Patch, among: Bools, matches: tuple[Match
         # a difference of two pictures has twice the noise of either; for that of its derivative see `SMOOTHING_PX`
         of_noise = weight * np.square(change.px_by_depth / SMOOTHING_PX) / 4.0
         sums = (weight * slope * scaled, weight * slope**2, of_noise, weight, np.ones(len(weight)))
-        for image, values in zip((pull, hold, noise, believed, seen), sums, strict=True):
-            image += _windowed(values, match, patch.shape)
+        for image, values in zip(totals, sums, strict=True):
+            image[match.pixels] += values
+    pull, hold, noise, believed, seen = (_windowed(image.reshape(patch.shape)) for image in totals)
     agree = (believed > BELIEVED * seen) & (noise > 0)
     textured = agree & (hold > TEXTURE_OVER_NOISE * noise)
     noise, hold, believed = (np.where(textured, image, 1.0) for image in (noise, hold, believed))
@@ -68,8 +69,6 @@ def sharpened(surface: Surface, patch: Patch, among: Bools, matches: tuple[Match
     return Sharpened(depth_m, known, among & agree.ravel(), textured, changes)
 
 
-def _windowed(values: Floats, match: Match, shape: tuple[int, int]) -> Floats:
-    """Means (h, w) over the window of values (n,) of the pixels of a match."""
-    image = np.zeros(shape)
-    image.ravel()[match.pixels] = values
+def _windowed(image: Floats) -> Floats:
+    """Means (h, w) over the window of an image (h, w)."""
     return np.asarray(cv2.GaussianBlur(image, (0, 0), WINDOW_PX, borderType=cv2.BORDER_CONSTANT), dtype=np.float64)

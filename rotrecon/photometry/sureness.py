@@ -40,6 +40,8 @@ def covariance_of(
     information, variance = np.zeros((count, count)), np.zeros((count, count))
     scaled: list[Floats] = []
     columns: list[Floats] = []
+    # a pixel may have been chosen twice
+    once = [np.unique(match.pixels, return_index=True) for match, _ in matches]
     for match, change in matches:
         prediction = match.agreement.predict(surface)
         residual, share = prediction.residual / match.sigma, match.likeness.independent_share
@@ -49,16 +51,19 @@ def covariance_of(
         own = prediction.columns * believed / match.sigma
         information += share * response * (own @ own.T)
         scaled.append(_placed(weight * residual, match, shape))
-        columns.append(np.stack([_placed(share * column, match, shape) for column in own]))
+        columns.append(share * own)
         shifts = SYSTEMATIC_PX * share * _by_part(own * _texture(change) / match.sigma, match, shape)
         variance += shifts @ shifts.T
-    for first, pull in enumerate(scaled):
-        smeared = np.stack([matches[first][0].likeness.smeared(column) for column in columns[first]])
-        smeared = smeared.reshape(count, -1)
-        for second, other in enumerate(scaled):
-            together = (pull != 0) & (other != 0)
-            alike = float((pull * other)[together].mean()) if together.any() else 0.0
-            variance += alike * (columns[second].reshape(count, -1) @ smeared.T)
+    for first, (match, _) in enumerate(matches):
+        placed = [match.likeness.smeared(_placed(column, match, shape)) for column in columns[first]]
+        smeared = np.stack(placed).reshape(count, -1)
+        pixels, _ = once[first]
+        pull = scaled[first].ravel()[pixels]
+        for (pixels_there, index), there, other in zip(once, columns, scaled, strict=True):
+            products = pull * other.ravel()[pixels]
+            together = products != 0
+            alike = float(products[together].mean()) if together.any() else 0.0
+            variance += alike * (there[:, index] @ smeared[:, pixels_there].T)
     outward = np.zeros(count)
     for edge in edges:
         prediction = edge.predict(surface)
