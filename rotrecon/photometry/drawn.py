@@ -8,10 +8,15 @@ from rotrecon.rays.ball import Ball
 from rotrecon.rays.lateral import Lateral
 from rotrecon.rays.patch import Patch
 from rotrecon.rays.surfaces import Surface, turn_of
+from rotrecon.rays.traces import Rays
 from rotrecon.sections.radii import Shape
 
 DRAWN_MARGIN_PX = 6.0
 """Distance of a drawn area from the outline: nobody draws closer."""
+DRAWN_SHARE, DRAWN_PX = 0.12, 2.5
+"""Half widths may be off the drawing's by this share or so many px before other starts are tried."""
+WIDEST = 95.0
+"""Percentile of the widths of something that stands for where it is widest."""
 LEAST_HALF_WIDTH_PX = 3.0
 """Of what an area may be drawn round."""
 
@@ -37,9 +42,22 @@ def drawn(shape: Shape, patch: Patch, segments: CrossSegments, distance_m: float
     return Lateral(center, turn, radius_m, slope if tapers else 0.0, patch.focal_px, tapers)
 
 
-def half_width_px(segments: CrossSegments, *, round_: bool) -> float:
-    """Half the width of what is drawn: of a round thing where it is widest."""
-    return float(np.percentile(_sections(segments)[2], 95 if round_ else 50))
+def as_wide_as_drawn(surface: Surface, rays: Rays, segments: CrossSegments) -> bool:
+    """Whether a surface that rays (3, N) meet is as wide in the picture as what is drawn.
+
+    Balls and cones are compared where they are widest: nobody draws closely round where they are narrow.
+    """
+    if isinstance(surface, Ball):
+        part, over_distance = WIDEST, np.array(surface.radius_m / surface.center_m[2])
+    else:
+        part = WIDEST if surface.tapers else 50.0
+        heights_m = surface.heights((rays * surface.meet(rays)[0]).T)
+        # an outline is seen beside the axis, which is farther away than what faces the camera
+        distance_m = surface.center_m[2] + heights_m * surface.direction[2]
+        over_distance = (surface.radius_m + surface.slope * heights_m) / distance_m
+    seen_px = surface.focal_px * float(np.percentile(over_distance, part))
+    drawn_px = float(np.percentile(_sections(segments)[2], part))
+    return abs(seen_px - drawn_px) < max(DRAWN_SHARE * drawn_px, DRAWN_PX)
 
 
 def _sections(segments: CrossSegments) -> tuple[Floats, Floats, Floats]:
@@ -54,5 +72,5 @@ def _sections(segments: CrossSegments) -> tuple[Floats, Floats, Floats]:
 def _ball(patch: Patch, place_px: Floats, half_px: Floats, distance_m: float) -> Ball:
     """The ball in the middle of sections of half widths (n,) at places (n, 2)."""
     middle = patch.camera.unproject((place_px[:1] + place_px[-1:]) / 2, np.ones(1))[0]
-    radius_m = float(np.percentile(half_px, 95)) / patch.focal_px * distance_m
+    radius_m = float(np.percentile(half_px, WIDEST)) / patch.focal_px * distance_m
     return Ball(distance_m * middle / np.linalg.norm(middle), radius_m, patch.focal_px)

@@ -9,7 +9,7 @@ from rotrecon.arrays import Floats, freeze
 from rotrecon.frame import Frame
 from rotrecon.photometry.carrying import carrier_of
 from rotrecon.photometry.climbing import DEPTH_SHARE, PLAIN, Climbed, climb, moved_px
-from rotrecon.photometry.drawn import drawn, half_width_px
+from rotrecon.photometry.drawn import as_wide_as_drawn, drawn
 from rotrecon.photometry.matches import FEWEST_PIXELS, Other
 from rotrecon.photometry.scanning import TILTS_RAD, scanned
 from rotrecon.photometry.sureness import covariance_of, sigma_by_outline
@@ -19,7 +19,7 @@ from rotrecon.rays.correlation import Likeness
 from rotrecon.rays.hypotheses import Held, Scene
 from rotrecon.rays.ray_fit import RayFit, Sight, predicted
 from rotrecon.rays.robust import PARAMETERS, Ranked
-from rotrecon.rays.surfaces import Surface, radius_seen_m
+from rotrecon.rays.surfaces import Surface
 from rotrecon.sections.radii import Shape
 from rotrecon.turned.turned import Turned
 
@@ -31,8 +31,6 @@ AGREEING_SHARE = 0.75
 """Of the pixels, how many must agree in brightness for a surface to be where it is said to be."""
 UNSURE = 0.1
 """Standard error of the radius over the radius of a fit that is no start."""
-DRAWN_SHARE, DRAWN_PX = 0.12, 2.5
-"""Half widths may be off the drawing's by this share or so many px before other starts are tried."""
 TEXTURED = 0.3
 """Of an object's pixels, how many must have a depth from the pictures for these to say what shape it has."""
 UNTEXTURED_DOUBT, UNTEXTURED_BALL_DOUBT, TEXTURE_HOLDS = 0.015, 0.03, 0.1
@@ -98,12 +96,7 @@ def refined(one: Ranked, scene: Scene, others: tuple[Other, ...]) -> Refinement 
     if climbed is None or not moved_px(fit.surface, climbed.surface, scene.patch, others) < FARTHEST_PX:
         return None
     refinement = _finished(one, fit, climbed, scene, by_depth=True)
-    rays = scene.patch.rays[:, climbed.pixels]
-    half_px = (
-        radius_seen_m(climbed.surface, rays) / float(np.median(climbed.surface.meet(rays)[0])) * scene.patch.focal_px
-    )
-    drawn_px = half_width_px(scene.segments, round_=one.shape == "sphere")
-    as_drawn = abs(half_px - drawn_px) < max(DRAWN_SHARE * drawn_px, DRAWN_PX)
+    as_drawn = as_wide_as_drawn(climbed.surface, scene.patch.rays[:, climbed.pixels], scene.segments)
     sure = float(np.sqrt(fit.covariance.diagonal()[fit.surface.size_place])) < UNSURE * fit.surface.size_m
     trusted = climbed.agreeing > AGREEING_SHARE and climbed.by_depth > DEPTH_SHARE and sure and as_drawn
     return replace(refinement, trusted=trusted)
