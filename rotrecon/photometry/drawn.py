@@ -3,12 +3,13 @@
 import numpy as np
 
 from rotrecon.arrays import Floats
+from rotrecon.camera import PinholeCamera
 from rotrecon.drawing import CrossSegments
 from rotrecon.rays.ball import Ball
 from rotrecon.rays.lateral import Lateral
+from rotrecon.rays.limbs import OUTLINE_REACH, OUTLINE_SECTIONS, limbs_of
 from rotrecon.rays.patch import Patch
 from rotrecon.rays.surfaces import Surface, turn_of
-from rotrecon.rays.traces import Rays
 from rotrecon.sections.radii import Shape
 
 DRAWN_MARGIN_PX = 6.0
@@ -42,22 +43,28 @@ def drawn(shape: Shape, patch: Patch, segments: CrossSegments, distance_m: float
     return Lateral(center, turn, radius_m, slope if tapers else 0.0, patch.focal_px, tapers)
 
 
-def as_wide_as_drawn(surface: Surface, rays: Rays, segments: CrossSegments) -> bool:
-    """Whether a surface that rays (3, N) meet is as wide in the picture as what is drawn.
-
-    Balls and cones are compared where they are widest: nobody draws closely round where they are narrow.
-    """
+def as_wide_as_drawn(surface: Surface, camera: PinholeCamera, segments: CrossSegments, length_m: float) -> bool:
+    """Whether the outline of a surface, beside a stroke along `length_m` of it, is as wide as what is drawn."""
     if isinstance(surface, Ball):
-        part, over_distance = WIDEST, np.array(surface.radius_m / surface.center_m[2])
+        part, seen_px = WIDEST, np.array([surface.radius_m / surface.center_m[2] * camera.focal_px])
     else:
-        part = WIDEST if surface.tapers else 50.0
-        heights_m = surface.heights((rays * surface.meet(rays)[0]).T)
-        # an outline is seen beside the axis, which is farther away than what faces the camera
-        distance_m = surface.center_m[2] + heights_m * surface.direction[2]
-        over_distance = (surface.radius_m + surface.slope * heights_m) / distance_m
-    seen_px = surface.focal_px * float(np.percentile(over_distance, part))
+        part, seen_px = 50.0, _half_outline_px(surface, camera, segments, length_m)
+    if len(seen_px) == 0:
+        return False
     drawn_px = float(np.percentile(_sections(segments)[2], part))
-    return abs(seen_px - drawn_px) < max(DRAWN_SHARE * drawn_px, DRAWN_PX)
+    return abs(float(np.median(seen_px)) - drawn_px) < max(DRAWN_SHARE * drawn_px, DRAWN_PX)
+
+
+def _half_outline_px(surface: Lateral, camera: PinholeCamera, segments: CrossSegments, length_m: float) -> Floats:
+    """Distances (n,) of the outline from the middle of it, beside the stroke."""
+    heights_m = np.linspace(-OUTLINE_REACH, OUTLINE_REACH, OUTLINE_SECTIONS) * length_m
+    limbs = limbs_of(surface, camera, heights_m)
+    row = (limbs.point_px - segments.origin_px) @ segments.along
+    beside = (row >= 0) & (row <= len(segments.pixel))
+    middle, end = camera.project(surface.center_m + np.outer([0.0, length_m / 2], surface.direction))
+    along = (end - middle) / np.linalg.norm(end - middle)
+    offset = limbs.point_px[beside] - middle
+    return np.abs(offset[:, 0] * along[1] - offset[:, 1] * along[0])
 
 
 def _sections(segments: CrossSegments) -> tuple[Floats, Floats, Floats]:

@@ -96,7 +96,7 @@ def refined(one: Ranked, scene: Scene, others: tuple[Other, ...]) -> Refinement 
     if climbed is None or not moved_px(fit.surface, climbed.surface, scene.patch, others) < FARTHEST_PX:
         return None
     refinement = _finished(one, fit, climbed, scene, by_depth=True)
-    as_drawn = as_wide_as_drawn(climbed.surface, scene.patch.rays[:, climbed.pixels], scene.segments)
+    as_drawn = as_wide_as_drawn(climbed.surface, scene.patch.camera, scene.segments, scene.length_m)
     sure = float(np.sqrt(fit.covariance.diagonal()[fit.surface.size_place])) < UNSURE * fit.surface.size_m
     trusted = climbed.agreeing > AGREEING_SHARE and climbed.by_depth > DEPTH_SHARE and sure and as_drawn
     return replace(refinement, trusted=trusted)
