@@ -16,11 +16,18 @@ Bytes = NDArray[np.uint8]
 
 BLOCK = 32768
 """Rows worked on at once where temporaries would be many times the result; they stay in the processor's cache."""
+STRIP_ROWS = 16
+"""Rows of a picture worked on at once: temporaries stay small beside it."""
 
 
 def blocks(rows: NDArray[Scalar]) -> list[NDArray[Scalar]]:
     """An array cut into pieces of at most `BLOCK` rows."""
     return np.array_split(rows, 1 + len(rows) // BLOCK)
+
+
+def strips(height: int) -> list[tuple[int, int]]:
+    """The rows of a picture, first and end of each strip."""
+    return [(top, min(top + STRIP_ROWS, height)) for top in range(0, height, STRIP_ROWS)]
 
 
 def freeze(record: Any) -> None:

@@ -5,7 +5,7 @@ from dataclasses import dataclass
 import numpy as np
 from numpy.typing import ArrayLike
 
-from rotrecon.arrays import Cloud, Floats, freeze
+from rotrecon.arrays import Cloud, Floats, freeze, strips
 
 
 @dataclass(frozen=True, eq=False)
@@ -39,16 +39,22 @@ class PinholeCamera:
 
     def cloud(self, depth_m: ArrayLike) -> Cloud:
         """Organised cloud (height, width, 3), float32, of a depth map (height, width); NaN where it is not valid."""
-        depth = np.asarray(depth_m, dtype=np.float32)
+        points = np.empty((self.height, self.width, 3), dtype=np.float32)
+        depth_before(points)[...] = depth_m
+        self.spread(points)
+        return points
+
+    def spread(self, points_m: Cloud) -> None:
+        """Turn the depth map that stands in the memory of a cloud (see `depth_before`) into the cloud, in place."""
+        depth = depth_before(points_m)
         u = ((np.arange(self.width) - self._principal[0]) / self._focal[0]).astype(np.float32)
         v = ((np.arange(self.height) - self._principal[1]) / self._focal[1]).astype(np.float32)
-        points = np.empty((*depth.shape, 3), dtype=np.float32)
-        z = points[..., 2]
-        z[...] = depth
-        z[~((z > 0) & (z < np.inf))] = np.nan
-        np.multiply(u, z, out=points[..., 0])
-        np.multiply(v[:, None], z, out=points[..., 1])
-        return points
+        for top, bottom in strips(self.height):
+            z, part = depth[top:bottom].copy(), points_m[top:bottom]
+            z[~((z > 0) & (z < np.inf))] = np.nan
+            np.multiply(u, z, out=part[..., 0])
+            np.multiply(v[top:bottom, None], z, out=part[..., 1])
+            part[..., 2] = z
 
     @property
     def _focal(self) -> Floats:
@@ -57,6 +63,15 @@ class PinholeCamera:
     @property
     def _principal(self) -> Floats:
         return np.array([self.K[0, 2], self.K[1, 2]])
+
+
+def depth_before(points_m: Cloud) -> Cloud:
+    """The depth map (height, width) that a cloud (height, width, 3) is made of in its own memory: the last third of it.
+
+    Written from the first row on, the cloud never reaches rows of depth that are still to be read: its row r ends where
+    3 (r + 1) rows of depth would, and the next row of depth begins after 2 height + r + 1.
+    """
+    return points_m.reshape(3, *points_m.shape[:2])[2]
 
 
 def transform(T_target_source: Floats, points_m: ArrayLike) -> Floats:

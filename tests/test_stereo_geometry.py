@@ -161,8 +161,25 @@ def test_pictures_of_a_pair_that_is_rectified_already_are_cut_as_they_would_be_w
     ]
     canvas = canvas_over(rectify(*views), box, 1.0, (0.2, 4.0))
     cut = canvas.reference_picture(), canvas.other_picture()
-    monkeypatch.setattr("rotrecon.stereo.canvas._shift", lambda H: None)
+    monkeypatch.setattr("rotrecon.stereo.canvas.shift_of", lambda H: None)
     warped = canvas.reference_picture(), canvas.other_picture()
     assert cut[0].any()
     for one, other in zip(cut, warped, strict=True):
         np.testing.assert_array_equal(one, other)
+
+
+def test_disparity_of_a_pair_that_is_rectified_already_is_carried_back_as_if_it_were_interpolated(monkeypatch):
+    rng = np.random.default_rng(6)
+    picture = np.zeros((48, 64, 3), np.uint8)
+    canvas = canvas_over(
+        rectify(View(picture, CAMERA_SQUARE, np.eye(4)), View(picture, CAMERA_SQUARE, at(0.1))),
+        whole(CAMERA_SQUARE),
+        1.0,
+        (0.2, 4.0),
+    )
+    disparity = rng.choice([-1.0, 4.0, 4.5, 14.0], canvas.size_px[::-1]).astype(np.float32)
+    box = (-3, -2, 70, 47)
+    cut = inverse_depths(canvas, disparity, box)
+    monkeypatch.setattr("rotrecon.stereo.carrying.shift_of", lambda H: None)
+    assert np.isfinite(cut).mean() > 0.3
+    np.testing.assert_array_equal(cut, inverse_depths(canvas, disparity, box))

@@ -6,6 +6,7 @@ import numpy as np
 
 from rotrecon.arrays import Floats, freeze
 from rotrecon.camera import PinholeCamera, inverse, transform
+from rotrecon.compiled import MATRIX, VECTOR, compiled
 from rotrecon.frame import View
 from rotrecon.rays.ball import Ball
 from rotrecon.rays.surfaces import Surface
@@ -33,13 +34,8 @@ class Carrier:
 
         Places of points that are not in front of that camera are NaN.
         """
-        ahead = self.T_view_reference[:3, :3] @ rays
-        x, y, z = ahead * depth_m + self.T_view_reference[:3, 3:]
-        z = np.where(z > 0, z, np.nan)
-        K = self.camera.K
-        focal, principal = np.array([[K[0, 0]], [K[1, 1]]]), np.array([[K[0, 2]], [K[1, 2]]])
-        slope = np.stack([x, y]) / z
-        return focal * slope + principal, focal * (ahead[:2] - slope * ahead[2]) / z
+        pose, K = np.ascontiguousarray(self.T_view_reference), np.ascontiguousarray(self.camera.K)
+        return _carried(np.ascontiguousarray(rays), np.ascontiguousarray(depth_m), pose, K)
 
     def surface(self, surface: Surface) -> Surface:
         """A surface of the reference camera's coordinates in the other camera's.
@@ -59,6 +55,24 @@ class Carrier:
         if not isinstance(surface, Ball):
             return columns
         return np.concatenate([self.T_view_reference[:3, :3].T @ columns[:3], columns[3:]])
+
+
+@compiled(MATRIX, VECTOR, MATRIX, MATRIX)
+def _carried(rays: Rays, depth_m: Floats, pose: Floats, K: Floats) -> tuple[Floats, Floats]:
+    """See `Carrier.carried`; `pose` (4, 4) takes the rays there, and K (3, 3) is that camera's."""
+    count = rays.shape[1]
+    place, by_depth = np.empty((2, count)), np.empty((2, count))
+    for i in range(count):
+        ahead = pose[2, 0] * rays[0, i] + pose[2, 1] * rays[1, i] + pose[2, 2] * rays[2, i]
+        z = ahead * depth_m[i] + pose[2, 3]
+        if not z > 0:
+            z = np.nan
+        for axis in range(2):
+            aside = pose[axis, 0] * rays[0, i] + pose[axis, 1] * rays[1, i] + pose[axis, 2] * rays[2, i]
+            slope = (aside * depth_m[i] + pose[axis, 3]) / z
+            place[axis, i] = K[axis, axis] * slope + K[axis, 2]
+            by_depth[axis, i] = K[axis, axis] * (aside - slope * ahead) / z
+    return place, by_depth
 
 
 def carrier_of(view: View, T_base_camera: Floats) -> Carrier:

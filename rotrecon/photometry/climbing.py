@@ -8,7 +8,7 @@ import numpy as np
 from rotrecon.arrays import Bools, Floats
 from rotrecon.photometry.matches import Match, Other, matches_of
 from rotrecon.photometry.outlines import CarriedOutline, Edge, outline_in
-from rotrecon.photometry.sharpening import textured_share
+from rotrecon.photometry.sharpening import Sharpened, sharpened
 from rotrecon.photometry.visible import clear_of, shown
 from rotrecon.rays.ball import Ball
 from rotrecon.rays.fitting import TUKEY, Loss, Measurement, cauchy, refine, tukey
@@ -48,6 +48,8 @@ class Climbed:
     """Share of them that matched depth agrees with."""
     matches: tuple[Match, ...]
     edges: tuple[Edge, ...]
+    sharpened: Sharpened
+    """Depth round the surface as the pictures have it."""
 
     def credit(self, surface: Surface, sigma: float, share: float, *, by_edges: bool) -> float:
         """How much of what was compared a surface explains, in half a likelihood's logarithm.
@@ -64,7 +66,8 @@ class Climbed:
     @property
     def agreeing(self) -> float:
         """Share of the compared pixels that agree; 0 where there are none."""
-        agree = [tukey(match.agreement.predict(self.surface).residual / match.sigma)[1] > 0 for match in self.matches]
+        changes = zip(self.matches, self.sharpened.changes, strict=True)
+        agree = [tukey(change.residual / match.sigma)[1] > 0 for match, change in changes]
         return float(np.concatenate(agree).mean()) if agree else 0.0
 
 
@@ -76,8 +79,7 @@ def climb(start: Surface, free: Bools, sigma: float, scene: Scene, others: tuple
     patch, units = scene.patch, start.units(scene.length_m)
     surface = sought = start
     edges = edges_of(surface, scene, others)
-    pixels, by_depth = _pixels(surface, patch, sigma)
-    matches = ()
+    pixels, by_depth, matches = np.zeros(0, dtype=np.bool_), 0.0, tuple[Match, ...]()
     for loss, most in ROUNDS:
         if moved_px(sought, surface, patch, others) > SOUGHT_AGAIN_PX:
             sought, edges = surface, edges_of(surface, scene, others)
@@ -86,10 +88,12 @@ def climb(start: Surface, free: Bools, sigma: float, scene: Scene, others: tuple
         if not matches and not edges:
             return None
         surface = _agreeing(surface, matches, edges, loss, free, units)
-    if edges and matches and textured_share(surface, patch, pixels, matches) < PLAIN:
+    sharp = sharpened(surface, patch, pixels, matches)
+    if edges and matches and sharp.textured < PLAIN:
         matches = tuple(replace(match, sigma=DISTRUST * match.sigma) for match in matches)
         surface = _agreeing(surface, matches, edges, tukey, free, units)
-    return Climbed(start, surface, free, pixels, by_depth, matches, tuple(edges))
+        sharp = sharpened(surface, patch, pixels, matches)
+    return Climbed(start, surface, free, pixels, by_depth, matches, tuple(edges), sharp)
 
 
 def _agreeing(
@@ -114,7 +118,8 @@ def edges_of(surface: Surface, scene: Scene, others: tuple[Other, ...]) -> list[
     if isinstance(surface, Ball):
         return []
     own = seen_outline(surface, scene.patch, scene.segments, scene.length_m).edges
-    points = (scene.patch.rays * surface.trace(scene.patch.rays).depth_m).T[scene.patch.kept]
+    rays = scene.patch.rays[:, scene.patch.kept]
+    points = (rays * surface.meet(rays)[0]).T
     low, high = np.percentile(surface.heights(points), [1, 99])
     edges: list[Edge] = [] if own is None else [own]
     for other in others:
@@ -127,7 +132,7 @@ def edges_of(surface: Surface, scene: Scene, others: tuple[Other, ...]) -> list[
 def moved_px(before: Surface, after: Surface, patch: Patch, others: tuple[Other, ...]) -> float:
     """How far the points of a surface moved in the other pictures, at most, in the median of the object's pixels."""
     rays = patch.rays[:, spread(np.flatnonzero(patch.kept).astype(np.int32), MOVED_PIXELS)]
-    first, second = (surface.trace(rays).depth_m for surface in (before, after))
+    first, second = (surface.meet(rays)[0] for surface in (before, after))
     moved: list[Floats] = [
         np.linalg.norm(other.carrier.carried(rays, second)[0] - other.carrier.carried(rays, first)[0], axis=0)
         for other in others

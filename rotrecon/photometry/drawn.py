@@ -3,15 +3,21 @@
 import numpy as np
 
 from rotrecon.arrays import Floats
+from rotrecon.camera import PinholeCamera
 from rotrecon.drawing import CrossSegments
 from rotrecon.rays.ball import Ball
 from rotrecon.rays.lateral import Lateral
+from rotrecon.rays.limbs import OUTLINE_REACH, OUTLINE_SECTIONS, limbs_of
 from rotrecon.rays.patch import Patch
 from rotrecon.rays.surfaces import Surface, turn_of
 from rotrecon.sections.radii import Shape
 
 DRAWN_MARGIN_PX = 6.0
 """Distance of a drawn area from the outline: nobody draws closer."""
+DRAWN_SHARE, DRAWN_PX = 0.12, 2.5
+"""Half widths may be off the drawing's by this share or so many px before other starts are tried."""
+WIDEST = 95.0
+"""Percentile of the widths of something that stands for where it is widest."""
 LEAST_HALF_WIDTH_PX = 3.0
 """Of what an area may be drawn round."""
 
@@ -37,9 +43,28 @@ def drawn(shape: Shape, patch: Patch, segments: CrossSegments, distance_m: float
     return Lateral(center, turn, radius_m, slope if tapers else 0.0, patch.focal_px, tapers)
 
 
-def half_width_px(segments: CrossSegments, *, round_: bool) -> float:
-    """Half the width of what is drawn: of a round thing where it is widest."""
-    return float(np.percentile(_sections(segments)[2], 95 if round_ else 50))
+def as_wide_as_drawn(surface: Surface, camera: PinholeCamera, segments: CrossSegments, length_m: float) -> bool:
+    """Whether the outline of a surface, beside a stroke along `length_m` of it, is as wide as what is drawn."""
+    if isinstance(surface, Ball):
+        part, seen_px = WIDEST, np.array([surface.radius_m / surface.center_m[2] * camera.focal_px])
+    else:
+        part, seen_px = 50.0, _half_outline_px(surface, camera, segments, length_m)
+    if len(seen_px) == 0:
+        return False
+    drawn_px = float(np.percentile(_sections(segments)[2], part))
+    return abs(float(np.median(seen_px)) - drawn_px) < max(DRAWN_SHARE * drawn_px, DRAWN_PX)
+
+
+def _half_outline_px(surface: Lateral, camera: PinholeCamera, segments: CrossSegments, length_m: float) -> Floats:
+    """Distances (n,) of the outline from the middle of it, beside the stroke."""
+    heights_m = np.linspace(-OUTLINE_REACH, OUTLINE_REACH, OUTLINE_SECTIONS) * length_m
+    limbs = limbs_of(surface, camera, heights_m)
+    row = (limbs.point_px - segments.origin_px) @ segments.along
+    beside = (row >= 0) & (row <= len(segments.pixel))
+    middle, end = camera.project(surface.center_m + np.outer([0.0, length_m / 2], surface.direction))
+    along = (end - middle) / np.linalg.norm(end - middle)
+    offset = limbs.point_px[beside] - middle
+    return np.abs(offset[:, 0] * along[1] - offset[:, 1] * along[0])
 
 
 def _sections(segments: CrossSegments) -> tuple[Floats, Floats, Floats]:
@@ -54,5 +79,5 @@ def _sections(segments: CrossSegments) -> tuple[Floats, Floats, Floats]:
 def _ball(patch: Patch, place_px: Floats, half_px: Floats, distance_m: float) -> Ball:
     """The ball in the middle of sections of half widths (n,) at places (n, 2)."""
     middle = patch.camera.unproject((place_px[:1] + place_px[-1:]) / 2, np.ones(1))[0]
-    radius_m = float(np.percentile(half_px, 95)) / patch.focal_px * distance_m
+    radius_m = float(np.percentile(half_px, WIDEST)) / patch.focal_px * distance_m
     return Ball(distance_m * middle / np.linalg.norm(middle), radius_m, patch.focal_px)

@@ -15,6 +15,7 @@ from rotrecon.rays.fitting import robust_scale
 from rotrecon.rays.patch import Patch
 from rotrecon.rays.ray_fit import INLIER_SIGMA, spread
 from rotrecon.rays.surfaces import Surface
+from rotrecon.rays.traces import Rays
 
 SMOOTHING_PX = 0.7
 """Standard deviation of the low pass on both pictures: without it noise passes for texture where there is little, and
@@ -58,23 +59,26 @@ def matches_of(
 
     At most `most` pixels are compared, of all views together.
     """
-    grey = smoothed(patch.picture(), SMOOTHING_PX).ravel()
-    found = (_match(surface, patch, grey, pixels, other, most // len(others)) for other in others)
+    grey, among = smoothed(patch.picture(), SMOOTHING_PX).ravel(), np.flatnonzero(pixels).astype(np.int32)
+    rays = np.ascontiguousarray(patch.rays[:, among])
+    found = (_match(surface, patch, grey, among, rays, other, most // len(others)) for other in others)
     return tuple(match for match in found if match is not None)
 
 
-def _match(surface: Surface, patch: Patch, grey: Floats, among: Bools, other: Other, most: int) -> Match | None:
-    pixels = np.flatnonzero(among).astype(np.int32)
-    pixels = pixels[seen_too(surface, patch.rays[:, pixels], other.carrier)]
+def _match(
+    surface: Surface, patch: Patch, grey: Floats, pixels: Indices, rays: Rays, other: Other, most: int
+) -> Match | None:
+    """Those of some pixels (N,) with rays (3, N) of a patch that another view sees too; `grey` is the whole patch's."""
+    seen = seen_too(surface, rays, other.carrier)
+    pixels, rays = pixels[seen], np.ascontiguousarray(rays[:, seen])
     if len(pixels) < FEWEST_PIXELS:
         return None
-    rays = patch.rays[:, pixels]
-    place_px, _ = other.carrier.carried(rays, surface.trace(rays).depth_m)
+    place_px, _ = other.carrier.carried(rays, surface.meet(rays)[0])
     spline = spline_of(other.view.image, place_px.min(axis=1), place_px.max(axis=1), SMOOTHING_PX)
     pixels = spread(pixels[spline.within(place_px)], most)
     if len(pixels) < FEWEST_PIXELS:
         return None
-    rays = patch.rays[:, pixels]
+    rays = np.ascontiguousarray(patch.rays[:, pixels])
     shades = shades_of(outward(surface, rays * surface.meet(rays)[0]))
     agreement = Agreement(rays, grey[pixels], shades, spline, other.carrier)
     residual = agreement.predict(surface).residual

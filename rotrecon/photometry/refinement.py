@@ -9,10 +9,9 @@ from rotrecon.arrays import Floats, freeze
 from rotrecon.frame import Frame
 from rotrecon.photometry.carrying import carrier_of
 from rotrecon.photometry.climbing import DEPTH_SHARE, PLAIN, Climbed, climb, moved_px
-from rotrecon.photometry.drawn import drawn, half_width_px
+from rotrecon.photometry.drawn import as_wide_as_drawn, drawn
 from rotrecon.photometry.matches import FEWEST_PIXELS, Other
 from rotrecon.photometry.scanning import TILTS_RAD, scanned
-from rotrecon.photometry.sharpening import sharpened
 from rotrecon.photometry.sureness import covariance_of, sigma_by_outline
 from rotrecon.photometry.visible import clear_of
 from rotrecon.rays.ball import Ball
@@ -20,7 +19,7 @@ from rotrecon.rays.correlation import Likeness
 from rotrecon.rays.hypotheses import Held, Scene
 from rotrecon.rays.ray_fit import RayFit, Sight, predicted
 from rotrecon.rays.robust import PARAMETERS, Ranked
-from rotrecon.rays.surfaces import Surface, radius_seen_m
+from rotrecon.rays.surfaces import Surface
 from rotrecon.sections.radii import Shape
 from rotrecon.turned.turned import Turned
 
@@ -32,8 +31,6 @@ AGREEING_SHARE = 0.75
 """Of the pixels, how many must agree in brightness for a surface to be where it is said to be."""
 UNSURE = 0.1
 """Standard error of the radius over the radius of a fit that is no start."""
-DRAWN_SHARE, DRAWN_PX = 0.12, 2.5
-"""Half widths may be off the drawing's by this share or so many px before other starts are tried."""
 TEXTURED = 0.3
 """Of an object's pixels, how many must have a depth from the pictures for these to say what shape it has."""
 UNTEXTURED_DOUBT, UNTEXTURED_BALL_DOUBT, TEXTURE_HOLDS = 0.015, 0.03, 0.1
@@ -99,12 +96,7 @@ def refined(one: Ranked, scene: Scene, others: tuple[Other, ...]) -> Refinement 
     if climbed is None or not moved_px(fit.surface, climbed.surface, scene.patch, others) < FARTHEST_PX:
         return None
     refinement = _finished(one, fit, climbed, scene, by_depth=True)
-    rays = scene.patch.rays[:, climbed.pixels]
-    half_px = (
-        radius_seen_m(climbed.surface, rays) / float(np.median(climbed.surface.meet(rays)[0])) * scene.patch.focal_px
-    )
-    drawn_px = half_width_px(scene.segments, round_=one.shape == "sphere")
-    as_drawn = abs(half_px - drawn_px) < max(DRAWN_SHARE * drawn_px, DRAWN_PX)
+    as_drawn = as_wide_as_drawn(climbed.surface, scene.patch.camera, scene.segments, scene.length_m)
     sure = float(np.sqrt(fit.covariance.diagonal()[fit.surface.size_place])) < UNSURE * fit.surface.size_m
     trusted = climbed.agreeing > AGREEING_SHARE and climbed.by_depth > DEPTH_SHARE and sure and as_drawn
     return replace(refinement, trusted=trusted)
@@ -170,14 +162,15 @@ def _shape(one: Refinement) -> Shape:
 def _finished(one: Ranked, fit: RayFit, climbed: Climbed, scene: Scene, *, by_depth: bool) -> Refinement:
     """What is known once a surface has come to its end, from where matched depth has it or from elsewhere."""
     patch, surface = scene.patch, climbed.surface
-    covariance = covariance_of(surface, climbed.matches, climbed.edges, climbed.free, patch.shape)
-    depth_m, known, agreeing = sharpened(surface, patch, climbed.pixels, climbed.matches)
-    textured = float(known.sum() / max(climbed.pixels.sum(), 1))
+    sharp = climbed.sharpened
+    depth_m, known, textured = sharp.depth_m, sharp.known, sharp.textured
+    matches = tuple(zip(climbed.matches, sharp.changes, strict=True))
+    covariance = covariance_of(surface, matches, climbed.edges, climbed.free, patch.shape)
     if not by_depth:
         # what was matched is known to be wrong; without texture, what agrees is where the surface says it is
-        trace = surface.trace(patch.rays)
-        there = known if textured > TEXTURED else known | agreeing
-        depth_m = np.where(there & ~known, trace.depth_m, np.where(trace.hit & ~known, np.nan, depth_m))
+        seen_m, hit = surface.meet(patch.rays)
+        there = known if textured > TEXTURED else known | sharp.agreeing
+        depth_m = np.where(there & ~known, seen_m, np.where(hit & ~known, np.nan, depth_m))
         fit = replace(fit, pixels=np.flatnonzero(there).astype(np.int32), sigma=1.0, likeness=Likeness(0.0, 0.0))
     pixels, sight = fit.pixels, fit.sight
     if known.sum() > max(SHARP_SHARE * len(pixels), FEWEST_PIXELS):

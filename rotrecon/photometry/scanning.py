@@ -4,12 +4,12 @@ from dataclasses import replace
 
 import cv2
 import numpy as np
-from numpy.typing import NDArray
 
-from rotrecon.arrays import Bools, Floats
+from rotrecon.arrays import Bools, Bytes, Cloud, Floats
+from rotrecon.compiled import MATRIX, compiled
 from rotrecon.photometry.carrying import Carrier
 from rotrecon.photometry.matches import FEWEST_PIXELS, Other
-from rotrecon.photometry.splines import smoothed
+from rotrecon.photometry.splines import smoothed, smoothing_reach
 from rotrecon.rays.lateral import Lateral
 from rotrecon.rays.patch import Patch
 from rotrecon.rays.ray_fit import spread
@@ -36,14 +36,17 @@ def scanned(surface: Surface, patch: Patch, pixels: Bools, other: Other, tilts_r
     index = spread(np.flatnonzero(pixels).astype(np.int32), SCANNED_PIXELS)
     rays, grey = patch.rays[:, index], smoothed(patch.picture(), SMOOTHING_PX).ravel()[index]
     scales = _scales(surface, rays, other.carrier)
-    picture = smoothed(other.view.image, SMOOTHING_PX).astype(np.float32)
+    tried = [_tilted(surface, float(tilt)) for tilt in tilts_rad]
+    met = [one.meet(rays) for one in tried]
+    near = [hit & (depth_m > 0) for depth_m, hit in met]
+    places_px = [
+        _places(rays[:, some], depth_m[some], scales, other.carrier)
+        for some, (depth_m, _) in zip(near, met, strict=True)
+    ]
+    corner, picture = _picture_about(other.view.image, places_px)
     best, found = -np.inf, surface
-    for tilt in tilts_rad:
-        tilted = _tilted(surface, float(tilt))
-        depth_m, hit = tilted.meet(rays)
-        near = hit & (depth_m > 0)
-        place_px = _places(rays[:, near], depth_m[near], scales, other.carrier)
-        alike = _correlations(grey[near], _sampled(picture, place_px))
+    for tilted, some, place_px in zip(tried, near, places_px, strict=True):
+        alike = _correlations(grey[some], _sampled(picture, place_px.astype(np.float32) - corner[:, None, None]))
         if len(alike) and alike.max() > best:
             best, found = float(alike.max()), _scaled(tilted, float(scales[alike.argmax()]))
     return found, best
@@ -51,7 +54,7 @@ def scanned(surface: Surface, patch: Patch, pixels: Bools, other: Other, tilts_r
 
 def _scales(surface: Surface, rays: Rays, carrier: Carrier) -> Floats:
     """Times as far away as to shift the surface in the other picture in even steps."""
-    depth_m = surface.trace(rays).depth_m
+    depth_m = surface.meet(rays)[0]
     apart = carrier.carried(rays, depth_m)[0] - carrier.carried(rays, INFINITE * depth_m)[0]
     shift_px = float(np.nanmedian(np.linalg.norm(apart, axis=0)))
     return shift_px / np.arange(SHIFTS[0] * shift_px, SHIFTS[1] * shift_px + STEP_PX, STEP_PX)
@@ -64,9 +67,31 @@ def _places(rays: Rays, depth_m: Floats, scales: Floats, carrier: Carrier) -> Fl
     return carried.reshape(2, *deeper_m.shape)
 
 
-def _sampled(picture: NDArray[np.float32], place_px: Floats) -> Floats:
+def _picture_about(image: Bytes, places_px: list[Floats]) -> tuple[Cloud, Cloud]:
+    """First pixel (2,) and smoothed grey values (h, w) of the part of a picture that places (2, ...) lie in."""
+    last = np.array(image.shape[1::-1]) - 1
+    ends = np.array([_extent(np.ascontiguousarray(place.reshape(2, -1))) for place in places_px])
+    reach = smoothing_reach(SMOOTHING_PX) + 1
+    low = np.clip(np.floor(ends[:, 0].min(axis=0)) - reach, 0, last).astype(np.int64)
+    high = np.clip(np.ceil(ends[:, 1].max(axis=0)) + reach, low, last).astype(np.int64) + 1
+    grey = smoothed(image[low[1] : high[1], low[0] : high[0]], SMOOTHING_PX)
+    return low.astype(np.float32), grey.astype(np.float32)
+
+
+@compiled(MATRIX)
+def _extent(place_px: Floats) -> tuple[tuple[float, float], tuple[float, float]]:
+    """Smallest and largest coordinates of those of some places (2, N) that are known; infinite where there are none."""
+    low_u, low_v, high_u, high_v = np.inf, np.inf, -np.inf, -np.inf
+    for i in range(place_px.shape[1]):
+        u, v = place_px[0, i], place_px[1, i]
+        if not (np.isnan(u) or np.isnan(v)):
+            low_u, low_v, high_u, high_v = min(low_u, u), min(low_v, v), max(high_u, u), max(high_v, v)
+    return (low_u, low_v), (high_u, high_v)
+
+
+def _sampled(picture: Cloud, place_px: Cloud) -> Floats:
     """Grey values (S, n) at places, NaN outside the picture; to 1/32 px, which is finer than any step."""
-    u, v = place_px.astype(np.float32)
+    u, v = place_px
     outside = float("nan")
     return np.asarray(
         cv2.remap(picture, u, v, cv2.INTER_LINEAR, borderMode=cv2.BORDER_CONSTANT, borderValue=outside), np.float64

@@ -3,10 +3,12 @@
 from dataclasses import dataclass
 from typing import Any, cast
 
+import cv2
 import numpy as np
 from scipy import ndimage  # pyright: ignore[reportMissingTypeStubs]
 
 from rotrecon.arrays import Bools, Bytes, Floats, freeze
+from rotrecon.compiled import FLOAT, MATRIX, NUMBA, VECTOR, compiled
 
 SCIPY = cast(Any, ndimage)
 """It comes without types."""
@@ -14,6 +16,22 @@ SUPPORT_PX = 3.0
 """Distance from a picture's border within which a spline knows what is beyond only by mirroring."""
 LUMA = np.array([0.299, 0.587, 0.114])
 """Of red, green and blue in grey (ITU-R BT.601), which is about how many of a sensor's pixels see each."""
+SMOOTHING_REACH = 4.0
+"""Standard deviations after which a low pass has nothing left to take a mean of."""
+NO_SMOOTHING_PX = 1e-9
+"""A low pass of less does nothing."""
+MUTABLE = NUMBA.types.Array(NUMBA.float64, 1, "C")
+"""An array without gaps, which the compiled function fills."""
+
+
+@compiled(FLOAT, MUTABLE, MUTABLE)
+def _weights(part: float, value: Floats, slope: Floats) -> None:
+    """Values and derivatives (4,) of the four B-splines that reach a place, at a part of the way to the next pixel."""
+    rest = 1.0 - part
+    value[0], value[3] = rest**3 / 6.0, part**3 / 6.0
+    value[1], value[2] = 2.0 / 3.0 - part**2 * (2.0 - part) / 2.0, 2.0 / 3.0 - rest**2 * (2.0 - rest) / 2.0
+    slope[0], slope[3] = -(rest**2) / 2.0, part**2 / 2.0
+    slope[1], slope[2] = part * (1.5 * part - 2.0), rest * (2.0 - 1.5 * rest)
 
 
 @dataclass(frozen=True, eq=False)
@@ -52,22 +70,7 @@ class Spline:
 
     def at(self, place_px: Floats) -> Sampled:
         """Grey values at places (2, N); those that are not within the rectangle count as its border."""
-        height, width = self.coefficients.shape
-        limits = np.array([[width - 3], [height - 3]], dtype=np.float64)
-        place = np.clip(np.nan_to_num(place_px - self.corner_px[:, None]), 1.0, limits)
-        floor = np.minimum(np.floor(place), limits - 1)
-        (across, across_slope), (down, down_slope) = (_weights(part) for part in place - floor)
-        first = ((floor[1] - 1) * width + floor[0] - 1).astype(np.int64)
-        flat = self.coefficients.ravel()
-        grey, by_u, by_v = np.zeros((3, place.shape[1]))
-        for row in range(4):
-            knots = [flat[first + (row * width + column)] for column in range(4)]
-            value = sum(weight * knot for weight, knot in zip(across, knots, strict=True))
-            slope = sum(weight * knot for weight, knot in zip(across_slope, knots, strict=True))
-            grey += down[row] * value
-            by_u += down[row] * slope
-            by_v += down_slope[row] * value
-        return Sampled(grey, by_u, by_v)
+        return Sampled(*_sampled(self.coefficients, np.ascontiguousarray(place_px), self.corner_px))
 
 
 def spline_of(image: Bytes, low_px: Floats, high_px: Floats, smoothing_px: float) -> Spline:
@@ -85,19 +88,42 @@ def spline_of(image: Bytes, low_px: Floats, high_px: Floats, smoothing_px: float
 
 def smoothed(image: Bytes, smoothing_px: float) -> Floats:
     """Grey values (h, w) of a picture (h, w, 3) after a low pass of a standard deviation."""
-    return SCIPY.gaussian_filter(image.astype(np.float64) @ LUMA, smoothing_px)
+    lag = np.arange(smoothing_reach(smoothing_px) + 1)
+    half = np.exp(-np.square(lag / max(smoothing_px, NO_SMOOTHING_PX)) / 2)
+    kernel = np.concatenate([half[:0:-1], half]) / (2 * half.sum() - half[0])
+    grey = cv2.transform(image.astype(np.float64), LUMA[None])
+    return np.asarray(cv2.sepFilter2D(grey, -1, kernel, kernel, borderType=cv2.BORDER_REFLECT), dtype=np.float64)
 
 
-def _weights(part: Floats) -> tuple[Floats, Floats]:
-    """Values and derivatives (4, N) of the four B-splines that reach a place, at a part (N,) of the way to the next."""
-    rest = 1.0 - part
-    value = np.stack(
-        [
-            rest**3 / 6.0,
-            2.0 / 3.0 - part**2 * (2.0 - part) / 2.0,
-            2.0 / 3.0 - rest**2 * (2.0 - rest) / 2.0,
-            part**3 / 6.0,
-        ]
-    )
-    slope = np.stack([-(rest**2) / 2.0, part * (1.5 * part - 2.0), rest * (2.0 - 1.5 * rest), part**2 / 2.0])
-    return value, slope
+def smoothing_reach(smoothing_px: float) -> int:
+    """Pixels to each side over which a low pass of a standard deviation takes its mean."""
+    return round(SMOOTHING_REACH * smoothing_px)
+
+
+@compiled(MATRIX, MATRIX, VECTOR)
+def _sampled(coefficients: Floats, place_px: Floats, corner_px: Floats) -> tuple[Floats, Floats, Floats]:
+    """See `Spline.at`."""
+    height, width = coefficients.shape
+    count = place_px.shape[1]
+    grey, by_u, by_v = np.zeros(count), np.zeros(count), np.zeros(count)
+    value, slope = np.empty((2, 4)), np.empty((2, 4))
+    first = np.empty(2, np.int64)
+    for i in range(count):
+        for axis in range(2):
+            last = (height if axis else width) - 3.0
+            place = place_px[axis, i] - corner_px[axis]
+            place = 1.0 if np.isnan(place) else min(max(place, 1.0), last)
+            floor = min(np.floor(place), last - 1.0)
+            first[axis] = int(floor) - 1
+            _weights(place - floor, value[axis], slope[axis])
+        for row in range(4):
+            line = coefficients[first[1] + row]
+            here, change = 0.0, 0.0
+            for column in range(4):
+                knot = line[first[0] + column]
+                here += value[0, column] * knot
+                change += slope[0, column] * knot
+            grey[i] += value[1, row] * here
+            by_u[i] += value[1, row] * change
+            by_v[i] += slope[1, row] * here
+    return grey, by_u, by_v

@@ -5,6 +5,7 @@ from collections.abc import Sequence
 import numpy as np
 
 from rotrecon.arrays import Bools, Floats
+from rotrecon.photometry.agreement import Change
 from rotrecon.photometry.matches import Match
 from rotrecon.photometry.outlines import Edge
 from rotrecon.rays.fitting import TUKEY, tukey
@@ -21,20 +22,27 @@ PARTS = 4
 
 
 def covariance_of(
-    surface: Surface, matches: tuple[Match, ...], edges: Sequence[Edge], free: Bools, shape: tuple[int, int]
+    surface: Surface,
+    matches: Sequence[tuple[Match, Change]],
+    edges: Sequence[Edge],
+    free: Bools,
+    shape: tuple[int, int],
 ) -> Floats:
     """Covariance (k, k) H^-1 M H^-1 of errors that are alike (Huber 1967), zero for what is not `free` (k,).
 
     H is the information that all measurements were weighted with. M is the variance of its gradient: J C J' of the
     pixels, C being the autocorrelation of their residuals; views share the reference picture's noise, so that their
     residuals are alike too; and of a systematic shift of parts of the picture. Edges, whose share is known, have their
-    information as variance, and that of a shift of all of them outward. `shape` is the patch's.
+    information as variance, and that of a shift of all of them outward. `matches` come with what they have along their
+    rays; `shape` is the patch's.
     """
     count = len(free)
     information, variance = np.zeros((count, count)), np.zeros((count, count))
     scaled: list[Floats] = []
     columns: list[Floats] = []
-    for match in matches:
+    # a pixel may have been chosen twice
+    once = [np.unique(match.pixels, return_index=True) for match, _ in matches]
+    for match, change in matches:
         prediction = match.agreement.predict(surface)
         residual, share = prediction.residual / match.sigma, match.likeness.independent_share
         weight = tukey(residual)[1]
@@ -43,16 +51,19 @@ def covariance_of(
         own = prediction.columns * believed / match.sigma
         information += share * response * (own @ own.T)
         scaled.append(_placed(weight * residual, match, shape))
-        columns.append(np.stack([_placed(share * column, match, shape) for column in own]))
-        shifts = SYSTEMATIC_PX * share * _by_part(own * _texture(match, surface) / match.sigma, match, shape)
+        columns.append(share * own)
+        shifts = SYSTEMATIC_PX * share * _by_part(own * _texture(change) / match.sigma, match, shape)
         variance += shifts @ shifts.T
-    for first, pull in enumerate(scaled):
-        smeared = np.stack([matches[first].likeness.smeared(column) for column in columns[first]])
-        smeared = smeared.reshape(count, -1)
-        for second, other in enumerate(scaled):
-            together = (pull != 0) & (other != 0)
-            alike = float((pull * other)[together].mean()) if together.any() else 0.0
-            variance += alike * (columns[second].reshape(count, -1) @ smeared.T)
+    for first, (match, _) in enumerate(matches):
+        placed = [match.likeness.smeared(_placed(column, match, shape)) for column in columns[first]]
+        smeared = np.stack(placed).reshape(count, -1)
+        pixels, _ = once[first]
+        pull = scaled[first].ravel()[pixels]
+        for (pixels_there, index), there, other in zip(once, columns, scaled, strict=True):
+            products = pull * other.ravel()[pixels]
+            together = products != 0
+            alike = float(products[together].mean()) if together.any() else 0.0
+            variance += alike * (there[:, index] @ smeared[:, pixels_there].T)
     outward = np.zeros(count)
     for edge in edges:
         prediction = edge.predict(surface)
@@ -83,9 +94,8 @@ def sigma_by_outline(surface: Surface, edges: Sequence[Edge], free: Bools, lengt
     return float(np.sqrt(covariance[surface.size_place, surface.size_place]))
 
 
-def _texture(match: Match, surface: Surface) -> Floats:
+def _texture(change: Change) -> Floats:
     """Change (N,) of the predicted grey values with a shift of the other picture, a pixel."""
-    change = match.agreement.along_rays(surface)
     return change.by_depth / np.maximum(change.px_by_depth, 1e-12)
 
 

@@ -4,6 +4,7 @@ import cv2
 import numpy as np
 
 from rotrecon.arrays import Bools, Floats
+from rotrecon.compiled import FLOAT, MATRIX, VECTOR, compiled
 from rotrecon.photometry.carrying import Carrier
 from rotrecon.rays.lateral import Lateral
 from rotrecon.rays.patch import Patch
@@ -23,9 +24,9 @@ ROUND_ABOUT_PX = 9
 def clear_of(surface: Surface, patch: Patch) -> Bools:
     """(N,) drawn pixels of a patch at which a surface would be seen, clear of its outline."""
     drawn = np.flatnonzero(patch.drawn)
-    rays = patch.rays[:, drawn]
-    trace = surface.trace(rays)
-    clear = trace.hit & (trace.depth_m > 0) & _faces(surface, rays * trace.depth_m, np.zeros(3))
+    rays = np.ascontiguousarray(patch.rays[:, drawn])
+    depth_m, hit = surface.meet(rays)
+    clear = hit & (depth_m > 0) & _faces(surface, rays * depth_m, np.zeros(3))
     result = np.zeros(len(patch.drawn), dtype=np.bool_)
     result[drawn] = clear & _inside(surface, rays, patch.focal_px)
     return result
@@ -33,7 +34,7 @@ def clear_of(surface: Surface, patch: Patch) -> Bools:
 
 def shown(surface: Surface, patch: Patch, clear: Bools, sigma: float) -> Bools:
     """Those of some pixels (N,) of a patch round which matched depth of a sigma agrees with a surface."""
-    depth_m = surface.trace(patch.rays).depth_m
+    depth_m = surface.meet(patch.rays)[0]
     limit_m = np.maximum(AGREES_SIGMA * sigma * patch.noise.sigma_m(depth_m), AGREES_RADIUS * surface.size_m)
     known, near = np.isfinite(patch.depth_m), np.abs(patch.depth_m - depth_m) < limit_m
     return clear & (_summed(near & patch.drawn, patch.shape) >= 0.5 * _summed(known & patch.drawn, patch.shape))
@@ -41,7 +42,7 @@ def shown(surface: Surface, patch: Patch, clear: Bools, sigma: float) -> Bools:
 
 def seen_too(surface: Surface, rays: Rays, carrier: Carrier) -> Bools:
     """(N,) which of the points where rays meet a surface another camera sees clear of its outline there."""
-    points = rays * surface.trace(rays).depth_m
+    points = rays * surface.meet(rays)[0]
     carried = carrier.T_view_reference[:3, :3] @ points + carrier.T_view_reference[:3, 3:]
     ahead = carried[2] > 0
     rays_there = carried / np.where(ahead, carried[2], 1.0)
@@ -51,25 +52,46 @@ def seen_too(surface: Surface, rays: Rays, carrier: Carrier) -> Bools:
 
 def _faces(surface: Surface, points: Floats, camera_m: Floats) -> Bools:
     """Which points (3, N) of a surface are seen at no steep incidence from a camera at (3,)."""
-    toward = camera_m[:, None] - points
-    return (outward(surface, points) * toward).sum(axis=0) > STEEPEST * np.sqrt((toward**2).sum(axis=0))
+    return _facing(outward(surface, points), np.ascontiguousarray(points), np.ascontiguousarray(camera_m))
 
 
 def outward(surface: Surface, points: Floats) -> Floats:
     """Unit normals (3, N) at points (3, N) of a surface, on the side that is seen."""
-    offset = points - surface.center_m[:, None]
-    if isinstance(surface, Lateral):
-        x, y, height = surface.turn @ offset
-        offset = surface.turn.T @ np.stack([x, y, -surface.slope * (surface.radius_m + surface.slope * height)])
-    return -surface.side * offset / np.sqrt((offset**2).sum(axis=0))
+    axis, slope = (surface.direction, surface.slope) if isinstance(surface, Lateral) else (np.zeros(3), 0.0)
+    return _outward(np.ascontiguousarray(points), surface.center_m, axis, surface.radius_m, slope, surface.side)
+
+
+@compiled(MATRIX, VECTOR, VECTOR, FLOAT, FLOAT, FLOAT)
+def _outward(points: Floats, center: Floats, axis: Floats, radius: float, slope: float, side: float) -> Floats:
+    """See `outward`; the axis (3,) is a unit, or zero for a ball."""
+    found = np.empty(points.shape)
+    for i in range(points.shape[1]):
+        x, y, z = points[0, i] - center[0], points[1, i] - center[1], points[2, i] - center[2]
+        height = axis[0] * x + axis[1] * y + axis[2] * z
+        lever = height + slope * (radius + slope * height)
+        x, y, z = x - lever * axis[0], y - lever * axis[1], z - lever * axis[2]
+        length = -side * np.sqrt(x * x + y * y + z * z)
+        found[0, i], found[1, i], found[2, i] = x / length, y / length, z / length
+    return found
+
+
+@compiled(MATRIX, MATRIX, VECTOR)
+def _facing(normals: Floats, points: Floats, camera_m: Floats) -> Bools:
+    """Which points (3, N) with normals (3, N) are seen at no steep incidence from a camera at (3,)."""
+    found = np.empty(points.shape[1], np.bool_)
+    for i in range(len(found)):
+        x, y, z = camera_m[0] - points[0, i], camera_m[1] - points[1, i], camera_m[2] - points[2, i]
+        along = normals[0, i] * x + normals[1, i] * y + normals[2, i] * z
+        found[i] = along > STEEPEST * np.sqrt(x * x + y * y + z * z)
+    return found
 
 
 def _inside(surface: Surface, rays: Rays, focal_px: float) -> Bools:
     """Which rays pass inside an outline by more than the guard; all for a surface seen from inside."""
     if surface.side > 0:
         return np.ones(len(rays[0]), dtype=np.bool_)
-    tangency = surface.tangency(rays)
-    return tangency.gap_m * focal_px < -GUARD_PX * np.abs(tangency.depth_m)
+    gap_m, depth_m = surface.gap(rays)
+    return gap_m * focal_px < -GUARD_PX * np.abs(depth_m)
 
 
 def _summed(which: Bools, shape: tuple[int, int]) -> Floats:

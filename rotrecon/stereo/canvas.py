@@ -5,14 +5,13 @@ from math import ceil, floor
 
 import cv2
 import numpy as np
+from numpy.typing import NDArray
 
-from rotrecon.arrays import Bytes, Floats, freeze
+from rotrecon.arrays import Bytes, Floats, Scalar, freeze
 from rotrecon.camera import PinholeCamera
 from rotrecon.frame import View
 from rotrecon.stereo.rectification import Rectification
 
-STRIP_ROWS = 64
-"""Rows of a picture worked on at once: temporaries stay small beside the pictures."""
 DISPARITY_STEP = 16
 """The matcher looks for a multiple of so many disparities."""
 UNSEEN_PX = 1e-6
@@ -62,8 +61,8 @@ class Canvas:
     def _picture(self, view: View, R: Floats, shift_px: int) -> Bytes:
         grey = cv2.cvtColor(view.image, cv2.COLOR_RGB2GRAY)
         to_view = view.camera.K @ R.T @ np.linalg.inv(self._K(shift_px))
-        if (corner := _shift(to_view)) is not None:
-            return _cut(np.asarray(grey, dtype=np.uint8), corner, self.size_px)
+        if (corner := shift_of(to_view)) is not None:
+            return cut(np.asarray(grey, dtype=np.uint8), corner, self.size_px, np.uint8(0))
         how = cv2.INTER_CUBIC | cv2.WARP_INVERSE_MAP
         picture = cv2.warpPerspective(grey, to_view, self.size_px, flags=how, borderMode=cv2.BORDER_CONSTANT)
         return np.asarray(picture, dtype=np.uint8)
@@ -73,7 +72,7 @@ class Canvas:
         return np.array([[self.focal_px, 0.0, u + shift_px], [0.0, self.focal_px, v], [0.0, 0.0, 1.0]])
 
 
-def _shift(H: Floats) -> tuple[int, int] | None:
+def shift_of(H: Floats) -> tuple[int, int] | None:
     """The whole pixels by which a homography (3, 3) does nothing but shift; None for any other."""
     shift = H / H[2, 2]
     corner = np.rint(shift[:2, 2])
@@ -82,26 +81,23 @@ def _shift(H: Floats) -> tuple[int, int] | None:
     return (int(corner[0]), int(corner[1])) if np.abs(shift - only).max() < UNSEEN_PX else None
 
 
-def _cut(picture: Bytes, corner: tuple[int, int], size_px: tuple[int, int]) -> Bytes:
-    """A part (height, width) of a picture from a corner on, black beyond the picture."""
+def cut(
+    picture: NDArray[Scalar], corner: tuple[int, int], size_px: tuple[int, int], missing: Scalar
+) -> NDArray[Scalar]:
+    """A part (height, width) of a picture from a corner on, `missing` beyond the picture."""
     (left, top), (width, height) = corner, size_px
-    cut = np.zeros((height, width), dtype=np.uint8)
+    part = np.full((height, width), missing, dtype=picture.dtype)
     low_v, high_v = max(top, 0), min(top + height, picture.shape[0])
     low_u, high_u = max(left, 0), min(left + width, picture.shape[1])
     if low_v < high_v and low_u < high_u:
-        cut[low_v - top : high_v - top, low_u - left : high_u - left] = picture[low_v:high_v, low_u:high_u]
-    return cut
+        part[low_v - top : high_v - top, low_u - left : high_u - left] = picture[low_v:high_v, low_u:high_u]
+    return part
 
 
 def beyond(picture: Bytes) -> Bytes:
     """(h, w) above 0 where nothing was recorded: rectified and undistorted pictures are black beyond their borders."""
     black = cv2.inRange(picture, np.zeros(1), np.zeros(1))
     return np.asarray(cv2.morphologyEx(black, cv2.MORPH_OPEN, BORDER_OPENING), dtype=np.uint8)
-
-
-def strips(start: int, end: int) -> list[tuple[int, int]]:
-    """Rows from start to end, cut into strips."""
-    return [(top, min(top + STRIP_ROWS, end)) for top in range(start, end, STRIP_ROWS)]
 
 
 def canvas_over(pair: Rectification, box: Box, scale: float, inverse_depths: tuple[float, float]) -> Canvas:

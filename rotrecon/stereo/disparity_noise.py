@@ -3,8 +3,8 @@
 import cv2
 import numpy as np
 
-from rotrecon.arrays import Bytes, Cloud
-from rotrecon.stereo.canvas import beyond, strips
+from rotrecon.arrays import Bytes, Cloud, strips
+from rotrecon.stereo.canvas import beyond
 
 FLOOR_PX = 0.1
 """Of parabolas through costs at whole disparities, which pull towards these, and of steps of a sixteenth."""
@@ -31,12 +31,19 @@ def check_against_pictures(reference: Bytes, other: Bytes, disparity: Cloud) -> 
     Disparities that are negative are unknown, and those taken out become so in place; pictures are (h, w), black where
     nothing was recorded. None for too few to say.
     """
+    return _sigma_px(*_checked(reference, other, disparity))
+
+
+def _checked(reference: Bytes, other: Bytes, disparity: Cloud) -> Cloud:
+    """Take out what lies beyond either picture; how far pictures differ at the others, what holds these, and these.
+
+    (3, n) of every `EVERY`-th row; see `_sigma_px`.
+    """
     unseen, other_unseen = beyond(reference), beyond(other)
     columns = np.arange(disparity.shape[1], dtype=np.float32)[None, :]
-    differences: list[Cloud] = []
-    held: list[Cloud] = []
-    nearness: list[Cloud] = []
-    for top, bottom in strips(0, len(disparity)):
+    told = np.empty((3, disparity[::EVERY].size), dtype=np.float32)
+    count = 0
+    for top, bottom in strips(len(disparity)):
         part = disparity[top:bottom]
         x = columns - part
         y = np.broadcast_to(np.arange(top, bottom, dtype=np.float32)[:, None], x.shape).copy()
@@ -44,10 +51,11 @@ def check_against_pictures(reference: Bytes, other: Bytes, disparity: Cloud) -> 
         part[(np.asarray(lost) > 0) | (unseen[top:bottom] > 0)] = -1.0
         known = part[::EVERY] >= 0
         seen = np.asarray(cv2.remap(other, x[::EVERY], y[::EVERY], cv2.INTER_LINEAR), dtype=np.float32)
-        differences.append(_local(np.where(known, reference[top:bottom:EVERY] - seen, np.float32(np.nan)))[known])
-        held.append(_squared_slopes(reference, top, bottom)[::EVERY][known])
-        nearness.append(part[::EVERY][known])
-    return _sigma_px(np.concatenate(differences), np.concatenate(held), np.concatenate(nearness))
+        difference = _local(np.where(known, reference[top:bottom:EVERY] - seen, np.float32(np.nan)))
+        here = slice(count, count + np.count_nonzero(known))
+        told[:, here] = difference[known], _squared_slopes(reference, top, bottom)[::EVERY][known], part[::EVERY][known]
+        count = here.stop
+    return told[:, :count]
 
 
 def _local(difference: Cloud) -> Cloud:

@@ -4,7 +4,7 @@ import cv2
 import numpy as np
 
 from rotrecon.arrays import Bools, Cloud
-from rotrecon.camera import PinholeCamera
+from rotrecon.camera import PinholeCamera, depth_before
 from rotrecon.drawing import AreaOfInterest, area_mask, check_area
 from rotrecon.frame import Frame, FrameUnavailable, StereoEvidence, StereoNoise
 from rotrecon.stereo.canvas import Box, Canvas, canvas_over, whole
@@ -41,9 +41,7 @@ MOST_MOVED = 0.3
 
 def whole_frame(prepared: Prepared) -> Frame | FrameUnavailable:
     """The whole frame matched at half resolution, for display."""
-    camera = prepared.views[0].camera
-    everything = np.ones((camera.height, camera.width), dtype=np.bool_)
-    frame = _frame(prepared, whole(camera), everything, COARSE, LARGE_WINDOW_PX)
+    frame = _frame(prepared, whole(prepared.views[0].camera), None, COARSE, LARGE_WINDOW_PX)
     return _too_empty(frame, "picture") or frame
 
 
@@ -59,15 +57,22 @@ def area_frame(prepared: Prepared, area: AreaOfInterest) -> Frame | FrameUnavail
         return FrameUnavailable(f"the area {problem}")
     if (problem := _moved(prepared.pairs[0], inside)) is not None:
         return FrameUnavailable(problem)
+    box = _box_about(inside)
+    del inside
+    frame = _frame(prepared, box, area, 1.0, window_for(area))
+    return _too_empty(frame, "area") or frame
+
+
+def _box_about(inside: Bools) -> Box:
+    """What is matched for the pixels of a mask (height, width)."""
     rows, columns = np.flatnonzero(inside.any(axis=1)), np.flatnonzero(inside.any(axis=0))
-    box = (
+    height, width = inside.shape
+    return (
         max(int(columns[0]) - MARGIN_PX, 0),
         max(int(rows[0]) - MARGIN_PX, 0),
-        min(int(columns[-1]) + 1 + MARGIN_PX, camera.width),
-        min(int(rows[-1]) + 1 + MARGIN_PX, camera.height),
+        min(int(columns[-1]) + 1 + MARGIN_PX, width),
+        min(int(rows[-1]) + 1 + MARGIN_PX, height),
     )
-    frame = _frame(prepared, box, inside, 1.0, window_for(area))
-    return _too_empty(frame, "area") or frame
 
 
 def _too_empty(frame: Frame, what: str) -> FrameUnavailable | None:
@@ -102,21 +107,27 @@ def _moved(pair: Pair, inside: Bools) -> str | None:
     )
 
 
-def _frame(prepared: Prepared, box: Box, inside: Bools, scale: float, window_px: int) -> Frame:
+def _frame(prepared: Prepared, box: Box, area: AreaOfInterest | None, scale: float, window_px: int) -> Frame:
+    """The frame with depth in a box; `area` is what its valid share is of, None for all of it.
+
+    The cloud is by far the largest thing here: while it is made, nothing else of a picture's size is held.
+    """
     reference = prepared.views[0]
     canvases = [canvas_over(pair.rectification, box, scale, range_in(pair, box)) for pair in prepared.pairs]
     found, sigmas = zip(*(_inverse_depths(canvas, box, window_px) for canvas in canvases), strict=True)
-    depth = _depth(fuse(found, sigmas), box, reference.camera)
+    points = _before_cloud(fuse(found, sigmas), box, reference.camera)
     del found
+    valid = _share(depth_before(points), area)
+    reference.camera.spread(points)
     return Frame(
         image=reference.image,
-        points_m=reference.camera.cloud(depth),
+        points_m=points,
         camera=reference.camera,
         T_base_camera=reference.T_base_camera,
         noise=_noise(prepared, fused_sigma(sigmas, [pair.rectification.R_reference[0] for pair in prepared.pairs])),
         workspace=prepared.workspace,
         views=prepared.views,
-        stereo=_evidence(prepared, canvases[0], window_px, scale, _share(np.isfinite(depth), inside)),
+        stereo=_evidence(prepared, canvases[0], window_px, scale, valid),
     )
 
 
@@ -127,12 +138,14 @@ def _inverse_depths(canvas: Canvas, box: Box, window_px: int) -> tuple[Cloud, fl
     return inverse_depths(canvas, matched.disparity_px, box), sigma_px / canvas.disparity_of_inverse_depth
 
 
-def _depth(inverse: Cloud, box: Box, camera: PinholeCamera) -> Cloud:
-    """Depth of the whole picture from that in a box; NaN elsewhere."""
+def _before_cloud(inverse: Cloud, box: Box, camera: PinholeCamera) -> Cloud:
+    """Memory (height, width, 3) for a cloud, with the depth that it will be made of; NaN outside the box."""
     left, top, right, bottom = box
-    depth: Cloud = np.full((camera.height, camera.width), np.nan, dtype=np.float32)
+    points: Cloud = np.empty((camera.height, camera.width, 3), dtype=np.float32)
+    depth = depth_before(points)
+    depth[...] = np.nan
     np.divide(np.float32(1.0), inverse, out=depth[top:bottom, left:right])
-    return depth
+    return points
 
 
 def _noise(prepared: Prepared, sigma: float) -> StereoNoise:
@@ -155,7 +168,13 @@ def _evidence(prepared: Prepared, canvas: Canvas, window_px: int, scale: float, 
     )
 
 
-def _share(valid: Bools, inside: Bools) -> float:
+def _share(depth: Cloud, area: AreaOfInterest | None) -> float:
+    """Share of the pixels of an area, or of all, that a depth map (height, width) has depth for."""
+    valid = np.isfinite(depth)
+    if area is None:
+        return float(np.count_nonzero(valid) / valid.size)
+    height, width = depth.shape
+    inside = area_mask(area, (width, height)) > 0
     return float(np.count_nonzero(valid & inside) / np.count_nonzero(inside))
 
 
