@@ -80,7 +80,8 @@ def _fitted(lags: Floats, alike: Floats, chance: Floats) -> Likeness:
     shapes = np.exp(-np.square(lags / LENGTHS_PX[:, None]))
     squares = np.maximum((shapes**2).sum(axis=1), np.finfo(float).tiny)
     share = (shapes @ alike / squares).clip(0.0, 1.0)
-    best = int(np.square(alike - share[:, None] * shapes).sum(axis=1).argmin())
+    # a single lag is explained by every length: of equals the shortest, not whichever the last digit favours
+    best = int(np.square(alike - share[:, None] * shapes).sum(axis=1).round(12).argmin())
     if share[best] < SIGNIFICANT * np.sqrt((shapes[best] ** 2 * chance).sum()) / squares[best]:
         return Likeness(0.0, 0.0)
     return Likeness(float(share[best]), float(LENGTHS_PX[best]))
