@@ -1,7 +1,6 @@
 """The record at a terminal."""
 
 import json
-import sys
 from contextlib import closing
 from dataclasses import replace
 from pathlib import Path
@@ -10,7 +9,6 @@ import platformdirs
 import pytest
 from msgspec import structs
 
-from app.cli import main
 from app.record.entries import Entry
 from app.record.evidence import proposal
 from app.record.store import FILE, Record
@@ -33,18 +31,6 @@ def data(tmp_path_factory: pytest.TempPathFactory) -> Path:
         record.append(Entry("rejected", "bob", entry.digest, said))
         record.append(Entry("declined", "eve"))
     return folder
-
-
-@pytest.fixture
-def rotrecon(monkeypatch: pytest.MonkeyPatch, capfd: pytest.CaptureFixture[str]):
-    def run(*arguments: object) -> tuple[int, str, str]:
-        monkeypatch.setattr(sys, "argv", ["rotrecon", *map(str, arguments)])
-        with pytest.raises(SystemExit) as stop:
-            main()
-        out, err = capfd.readouterr()
-        return int(stop.value.code or 0), out, err
-
-    return run
 
 
 def test_list_shows_every_entry_and_the_head(rotrecon, data):

@@ -9,12 +9,10 @@ from hypothesis import strategies as st
 
 from rotrecon.arrays import Floats
 from rotrecon.camera import inverse, transform
-from rotrecon.drawing import cut_sections
 from rotrecon.frame import View
 from rotrecon.outcome import Fit
 from rotrecon.photometry.agreement import Agreement, shades_of
 from rotrecon.photometry.carrying import Carrier
-from rotrecon.photometry.drawn import as_wide_as_drawn
 from rotrecon.photometry.outlines import CarriedOutline
 from rotrecon.photometry.refinement import Refinement, others_of, refined, sought, weighed
 from rotrecon.photometry.splines import SCIPY, SUPPORT_PX, Spline, spline_of
@@ -29,8 +27,7 @@ from rotrecon.rays.robust import Ranked
 from rotrecon.rays.surfaces import Surface, turn_of
 from rotrecon.reconstruct import reconstruct
 from rotrecon.settings import Settings
-from rotrecon.simulation.ideal_drawing import ideal_drawing
-from tests.pairs import BALL, CAMERA, CONE, LEG, Pair, painted, pair, surface_of
+from tests.pairs import BALL, CAMERA, CONE, LEG, Pair, painted, pair
 
 ASIDE = np.array([[0.998, 0.02, -0.06, -0.06], [-0.02, 0.9998, 0.0, 0.004], [0.06, 0.0012, 0.998, 0.01], [0, 0, 0, 1]])
 
@@ -294,18 +291,3 @@ def test_outlines_along_the_line_between_the_cameras_tell_no_size():
     across, along = sigma_m
     assert across < 0.01 * 0.03
     assert along > 0.1 * 0.03
-
-
-@pytest.mark.parametrize("tilt", [-0.9, 0.0, 0.9])
-@pytest.mark.parametrize("shape", [LEG, CONE, BALL], ids=["leg", "cone", "ball"])
-def test_the_true_size_is_as_wide_as_it_is_drawn_however_it_lies_and_a_fifth_more_is_not(shape, tilt):
-    place = np.eye(4)
-    place[:3, 3] = 0.0, 0.0, 0.4
-    axis = np.array([0.3, np.cos(tilt), np.sin(tilt)])
-    place[:3, :3] = turn_of(axis / np.linalg.norm(axis), -place[:3, 3]).T
-    solid = shape.moved(place)
-    drawing = ideal_drawing(solid, CAMERA)
-    segments = cut_sections(drawing.area, drawing.stroke, (CAMERA.width, CAMERA.height))
-    surface = surface_of(solid)
-    assert as_wide_as_drawn(surface, CAMERA, segments, 0.15)
-    assert not as_wide_as_drawn(replace(surface, radius_m=1.25 * surface.radius_m), CAMERA, segments, 0.15)
