@@ -31,8 +31,8 @@ REPEATING = 0.25
 """Likeness of errors above which neighbouring pixels repeat each other."""
 TAMED_PX = 0.1
 """Distance from the outline within which depths count as if they were that far inside, where errors are alike."""
-SETTLED_PX = 0.1
-"""A round that changes the radius by less than this has compared the pixels that the next would compare."""
+SETTLED_SIZE = 1e-4
+"""A round that changes the radius by less than this share is the last."""
 NEAR_PX = 4.0
 """Pixels so far outside the outline still speak for or against it."""
 INLIER_SIGMA = 3.0
@@ -101,7 +101,6 @@ def fine(
 ) -> RayFit | None:
     """Rounds over the pixels within the outline and close to it; None when there are too few to hold the parameters."""
     share, alike, size_m, judge = 1.0, 0.0, surface.size_m, surface
-    depth_m = float(np.linalg.norm(surface.center_m))
     pixels: Indices = np.empty(0, dtype=np.int32)
     for round_ in range(FINE_ROUNDS):
         # a guard that followed the surface would let it shrink away from what does not fit
@@ -121,7 +120,7 @@ def fine(
         say = share if used is None else min(share * len(pixels) / len(used), 1.0)
         weighting = [(sigma, say), *((1.0, outline_share) for _, outline_share in outlines)]
         surface = refine(surface, measurements, weighting, tukey, free, units, FINE_ITERATIONS).surface
-        if abs(surface.size_m - size_m) < SETTLED_PX * depth_m / patch.focal_px and round_ > 0:
+        if abs(surface.size_m - size_m) < SETTLED_SIZE * size_m and not hasty:
             break
         size_m = surface.size_m
     return _finished(surface, patch, pixels, free, sight, outlines)
