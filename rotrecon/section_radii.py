@@ -8,7 +8,7 @@ from rotrecon.arrays import Bools, Cloud, Floats, Indices, freeze
 from rotrecon.axis import Axis, SpaceSections, cut_in_space
 from rotrecon.circles import SectionCircles, SectionState, circumcircles
 from rotrecon.rays.ball import Ball
-from rotrecon.rays.fitting import MEDIAN_LOSS, TO_SIGMA
+from rotrecon.rays.losses import MEDIAN_LOSS, TO_SIGMA
 from rotrecon.rays.patch import Patch
 from rotrecon.rays.ray_fit import RayFit
 from rotrecon.rays.surfaces import Surface

@@ -5,9 +5,9 @@ from dataclasses import dataclass
 import numpy as np
 
 from rotrecon.arrays import Bools, Floats, freeze
-from rotrecon.rays.fitting import MEDIAN_LOSS, TO_SIGMA
 from rotrecon.rays.lateral import Lateral
 from rotrecon.rays.limbs import limbs_of
+from rotrecon.rays.losses import MEDIAN_LOSS, TO_SIGMA
 from rotrecon.rays.patch import Patch
 from rotrecon.rays.ray_fit import RayFit
 

@@ -4,8 +4,8 @@ import numpy as np
 import pytest
 
 from rotrecon.extent import Extent, extent_of
-from rotrecon.rays.fitting import robust_scale
 from rotrecon.rays.lateral import Lateral
+from rotrecon.rays.losses import robust_scale
 from rotrecon.rays.patch import Patch
 from rotrecon.rays.ray_fit import Sight, depths_of, near
 from rotrecon.turned.turned import turned_from

@@ -10,19 +10,9 @@ from hypothesis import strategies as st
 
 from rotrecon.noise import RayNoise
 from rotrecon.rays.ball import Ball
-from rotrecon.rays.fitting import (
-    CAUCHY,
-    TUKEY,
-    Depths,
-    MatchedDepths,
-    Outline,
-    Refined,
-    cauchy,
-    refine,
-    robust_scale,
-    tukey,
-)
+from rotrecon.rays.fitting import Depths, MatchedDepths, Outline, Refined, refine
 from rotrecon.rays.lateral import Lateral
+from rotrecon.rays.losses import CAUCHY, TUKEY, cauchy, robust_scale, tukey
 from rotrecon.rays.surfaces import Surface, turn_of
 
 FOCAL_PX = 700.0

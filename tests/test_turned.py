@@ -6,8 +6,8 @@ from hypothesis import given, settings
 from hypothesis import strategies as st
 
 from rotrecon.rays.ball import Ball
-from rotrecon.rays.fitting import tukey
 from rotrecon.rays.lateral import Lateral
+from rotrecon.rays.losses import tukey
 from rotrecon.rays.surfaces import turn_of
 from rotrecon.turned.smoothness import UNBENT, Radii, Smoothness, next_scale, second_differences
 from rotrecon.turned.turned import Turned, turned_from

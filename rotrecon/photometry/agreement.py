@@ -8,7 +8,8 @@ import numpy as np
 from rotrecon.arrays import Bools, Floats, Indices, freeze
 from rotrecon.photometry.carrying import Carrier
 from rotrecon.photometry.splines import Spline
-from rotrecon.rays.fitting import UNSCALED, Prediction, robust_scale, tukey
+from rotrecon.rays.fitting import UNSCALED, Prediction
+from rotrecon.rays.losses import robust_scale, tukey
 from rotrecon.rays.surfaces import Surface
 from rotrecon.rays.traces import Rays
 

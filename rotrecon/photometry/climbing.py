@@ -11,9 +11,10 @@ from rotrecon.photometry.outlines import CarriedOutline, Edge, outline_in
 from rotrecon.photometry.sharpening import Sharpened, sharpened
 from rotrecon.photometry.visible import clear_of, shown
 from rotrecon.rays.ball import Ball
-from rotrecon.rays.fitting import TUKEY, Loss, Measurement, cauchy, refine, tukey
+from rotrecon.rays.fitting import Measurement, refine
 from rotrecon.rays.hypotheses import Scene
 from rotrecon.rays.limbs import seen_outline
+from rotrecon.rays.losses import TUKEY, Loss, cauchy, tukey
 from rotrecon.rays.patch import Patch
 from rotrecon.rays.ray_fit import spread
 from rotrecon.rays.surfaces import Surface

@@ -11,7 +11,7 @@ from rotrecon.photometry.carrying import Carrier
 from rotrecon.photometry.splines import smoothed, spline_of
 from rotrecon.photometry.visible import outward, seen_too
 from rotrecon.rays.correlation import Likeness, likeness_of
-from rotrecon.rays.fitting import robust_scale
+from rotrecon.rays.losses import robust_scale
 from rotrecon.rays.patch import Patch
 from rotrecon.rays.ray_fit import INLIER_SIGMA, spread
 from rotrecon.rays.surfaces import Surface

@@ -8,7 +8,7 @@ import numpy as np
 from rotrecon.arrays import Bools, Floats, freeze
 from rotrecon.photometry.agreement import Change
 from rotrecon.photometry.matches import SMOOTHING_PX, Match
-from rotrecon.rays.fitting import tukey
+from rotrecon.rays.losses import tukey
 from rotrecon.rays.patch import Patch
 from rotrecon.rays.surfaces import Surface
 

@@ -8,7 +8,7 @@ from rotrecon.arrays import Bools, Floats
 from rotrecon.photometry.agreement import Change
 from rotrecon.photometry.matches import Match
 from rotrecon.photometry.outlines import Edge
-from rotrecon.rays.fitting import TUKEY, tukey
+from rotrecon.rays.losses import TUKEY, tukey
 from rotrecon.rays.surfaces import Surface
 
 SYSTEMATIC_PX = 0.008

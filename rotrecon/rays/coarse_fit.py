@@ -6,7 +6,8 @@ import numpy as np
 
 from rotrecon.arrays import Bools, Floats, Indices
 from rotrecon.drawing import CrossSegments
-from rotrecon.rays.fitting import TO_SIGMA, Measurement, Outline, cauchy, refine, robust_scale
+from rotrecon.rays.fitting import Measurement, Outline, refine
+from rotrecon.rays.losses import TO_SIGMA, cauchy, robust_scale
 from rotrecon.rays.patch import Patch
 from rotrecon.rays.ray_fit import depths_of, spread
 from rotrecon.rays.surfaces import Surface

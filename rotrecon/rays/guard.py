@@ -6,8 +6,9 @@ import numpy as np
 
 from rotrecon.arrays import Bools, Floats
 from rotrecon.rays.ball import Ball
-from rotrecon.rays.fitting import Outline, tukey
+from rotrecon.rays.fitting import Outline
 from rotrecon.rays.lateral import Lateral
+from rotrecon.rays.losses import tukey
 from rotrecon.rays.patch import Patch
 from rotrecon.rays.ray_fit import RayFit, Sight, fine, predicted
 from rotrecon.rays.surfaces import Surface

@@ -10,9 +10,10 @@ from rotrecon.camera import PinholeCamera
 from rotrecon.drawing import CrossSegments
 from rotrecon.rays.ball import Ball
 from rotrecon.rays.coarse_fit import coarse, coarse_pixels
-from rotrecon.rays.fitting import Outline, cauchy
+from rotrecon.rays.fitting import Outline
 from rotrecon.rays.lateral import Lateral
 from rotrecon.rays.limbs import ANY_GAP_PX, mask_outline
+from rotrecon.rays.losses import cauchy
 from rotrecon.rays.patch import Patch
 from rotrecon.rays.ray_fit import depths_of, spread
 from rotrecon.rays.starts import Ridge, ball_starts, cone_starts, cylinder_starts, ridge, together

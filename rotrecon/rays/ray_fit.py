@@ -8,17 +8,8 @@ import numpy as np
 
 from rotrecon.arrays import Bools, Floats, Indices, freeze
 from rotrecon.rays.correlation import Likeness, likeness_of
-from rotrecon.rays.fitting import (
-    TUKEY,
-    Depths,
-    MatchedDepths,
-    Measurement,
-    Outline,
-    Prediction,
-    refine,
-    robust_scale,
-    tukey,
-)
+from rotrecon.rays.fitting import Depths, MatchedDepths, Measurement, Outline, Prediction, refine
+from rotrecon.rays.losses import TUKEY, robust_scale, tukey
 from rotrecon.rays.patch import Patch
 from rotrecon.rays.surfaces import Surface
 

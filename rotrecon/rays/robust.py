@@ -8,11 +8,12 @@ import numpy as np
 
 from rotrecon.arrays import Floats
 from rotrecon.rays.coarse_fit import follow
-from rotrecon.rays.fitting import TUKEY, Outline, tukey
+from rotrecon.rays.fitting import Outline
 from rotrecon.rays.guard import Outlines, Task, doubting, settle
 from rotrecon.rays.hypotheses import Held, Scene, coarse_cost, hypotheses
 from rotrecon.rays.lateral import Lateral
 from rotrecon.rays.limbs import SeenOutline, seen_outline
+from rotrecon.rays.losses import TUKEY, tukey
 from rotrecon.rays.ray_fit import RayFit, Sight, fine, predicted
 from rotrecon.rays.surfaces import Surface
 from rotrecon.sections.radii import Shape

@@ -5,7 +5,7 @@ from dataclasses import dataclass, replace
 import numpy as np
 
 from rotrecon.arrays import Bools, Floats, Indices, freeze
-from rotrecon.rays.fitting import TO_SIGMA, robust_scale, tukey
+from rotrecon.rays.losses import TO_SIGMA, robust_scale, tukey
 from rotrecon.turned.looks import FAR, FEWEST_PIXELS, Grazes, Looks, medians
 
 ROUNDS = 3

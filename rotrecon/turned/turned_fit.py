@@ -7,8 +7,9 @@ import numpy as np
 from rotrecon.arrays import Bools, Floats, Indices, freeze
 from rotrecon.extent import Extent
 from rotrecon.rays.correlation import Likeness, likeness_of
-from rotrecon.rays.fitting import Measurement, Outline, refine, tukey
+from rotrecon.rays.fitting import Measurement, Outline, refine
 from rotrecon.rays.lateral import Lateral
+from rotrecon.rays.losses import tukey
 from rotrecon.rays.patch import Patch
 from rotrecon.rays.ray_fit import INLIER_SIGMA, OVERSAMPLED, WHOLE, RayFit, Sight, depths_of, spread
 from rotrecon.rays.starts import Ridge

@@ -7,8 +7,9 @@ import numpy as np
 from rotrecon.arrays import Bools, Floats, Indices, freeze
 from rotrecon.extent import Extent
 from rotrecon.rays.coarse_fit import OUTLINE_SCALE
-from rotrecon.rays.fitting import TO_SIGMA, Measurement, Outline, Prediction, cauchy, refine
+from rotrecon.rays.fitting import Measurement, Outline, Prediction, refine
 from rotrecon.rays.lateral import Lateral
+from rotrecon.rays.losses import TO_SIGMA, cauchy
 from rotrecon.rays.patch import Patch
 from rotrecon.rays.ray_fit import spread
 from rotrecon.rays.starts import Ridge, robust_line
