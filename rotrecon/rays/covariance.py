@@ -25,8 +25,9 @@ def sandwich(
     """The covariance H^-1 M H^-1 (k, k) of errors that are alike (Huber 1967), zero for what is not `free` (k,).
 
     `fitted` is the surface with the pixels (N,) of a patch it was fitted to, `noise` the sigma of their residuals and
-    how these are alike, `outlines` come each with its independent share. H is the information that the depths were weighted with, and the
-    outline's; M the variance of its gradient: of the depths J C J' with C their autocorrelation, of outlines, whose share is known, their information itself.
+    how these are alike; `outlines` come each with its independent share. H is the information that the depths were
+    weighted with, and the outline's; M the variance of its gradient: of the depths J C J' with C their
+    autocorrelation, of outlines, whose share is known, their information itself.
     """
     (surface, patch, pixels), (sigma, likeness) = fitted, noise
     scaled, share = depths.residual / sigma, likeness.independent_share
