@@ -5,6 +5,7 @@ from collections.abc import Collection, Iterator
 from contextlib import closing, contextmanager
 from pathlib import Path
 from threading import Lock
+from time import monotonic, sleep
 from typing import Any
 
 import platformdirs
@@ -20,6 +21,7 @@ from rotrecon.frame import Frame
 FILE = "record.sqlite3"
 BUSY_S = 10.0
 """How long a writer waits for another: writing a frame takes less than one second."""
+RETRY_S = 0.01
 PAGE = 200
 """Entries that are read at once: some megabytes."""
 FORMAT = 1
@@ -56,7 +58,7 @@ class Record:
                 flush_folder(folder.resolve().parent)
             connection = _connected(str(folder / FILE))
             # with both, a commit is on the disk when it returns, and a reader never waits for a writer
-            connection.execute("PRAGMA journal_mode = WAL")
+            _write_ahead(connection)
             connection.execute("PRAGMA synchronous = FULL")
             if _format_of(connection) == 0:
                 connection.executescript(f"BEGIN IMMEDIATE; {SCHEMA} COMMIT;")
@@ -175,6 +177,19 @@ class Record:
 
 def _connected(path: str, uri: bool = False) -> sqlite3.Connection:
     return sqlite3.connect(path, timeout=BUSY_S, isolation_level=None, check_same_thread=False, uri=uri)
+
+
+def _write_ahead(connection: sqlite3.Connection) -> None:
+    """Switch the journal; when another process is at it too, SQLite refuses at once instead of waiting."""
+    end = monotonic() + BUSY_S
+    while True:
+        try:
+            connection.execute("PRAGMA journal_mode = WAL")
+            return
+        except sqlite3.OperationalError:
+            if monotonic() > end:
+                raise
+            sleep(RETRY_S)
 
 
 def _format_of(connection: sqlite3.Connection) -> int:
