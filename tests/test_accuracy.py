@@ -42,11 +42,7 @@ def test_white_noise_costs_little_more_than_the_bound(found, name, cell):
         assert rms_of(part, quantity) <= WHITE_RATIO * bound_of(part, quantity)
 
 
-LIMITED = [case for case in cases(*CORRELATED) if not (case[0] == "cone" and case[1].noise == "length")]
-"""Of the two readings of a 4 px kernel the cone's half angle keeps its limit in the box's only."""
-
-
-@pytest.mark.parametrize(("name", "cell"), LIMITED)
+@pytest.mark.parametrize(("name", "cell"), cases(*CORRELATED))
 def test_correlated_noise_stays_within_its_limit(found, name, cell):
     part = found.of(name, cell, METHOD)
     assert refused_share([trial.outcome for trial in part]) == 0

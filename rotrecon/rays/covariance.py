@@ -4,10 +4,11 @@ import numpy as np
 
 from rotrecon.arrays import Bools, Floats, Indices
 from rotrecon.rays.correlation import Likeness
-from rotrecon.rays.fitting import Outline, Prediction
+from rotrecon.rays.fitting import Outlines, Prediction
 from rotrecon.rays.losses import TUKEY, tukey
 from rotrecon.rays.patch import Patch
 from rotrecon.rays.surfaces import Surface
+from rotrecon.rays.whitening import Whitened
 
 REPEATING = 0.25
 """Likeness of errors above which neighbouring pixels repeat each other."""
@@ -15,35 +16,60 @@ TAMED_PX = 0.1
 """Distance from the outline within which depths count as if they were that far inside, where errors are alike."""
 
 
-def sandwich(
+def covariance_of_depths(
     depths: Prediction,
     fitted: tuple[Surface, Patch, Indices],
     free: Bools,
     noise: tuple[float, Likeness],
-    outlines: tuple[tuple[Outline, float], ...],
+    outlines: Outlines,
 ) -> Floats:
-    """The covariance H^-1 M H^-1 (k, k) of errors that are alike (Huber 1967), zero for what is not `free` (k,).
+    """The covariance (k, k) of a surface fitted to depths and outlines; see `_sandwich`.
 
     `fitted` is the surface with the pixels (N,) of a patch it was fitted to, `noise` the sigma of their residuals and
-    how these are alike; `outlines` come each with its independent share. H is the information that the depths were
-    weighted with, and the outline's; M the variance of its gradient: of the depths J C J' with C their
-    autocorrelation, of outlines, whose share is known, their information itself.
+    how these are alike; `outlines` come each with its independent share.
     """
     (surface, patch, pixels), (sigma, likeness) = fitted, noise
-    scaled, share = depths.residual / sigma, likeness.independent_share
-    weight = tukey(scaled)[1]
-    by_parameters = depths.columns
-    columns = by_parameters * ((weight > 0) / sigma)
+    scaled = depths.residual / sigma
+    columns = depths.columns * ((tukey(scaled)[1] > 0) / sigma)
     if likeness.alike > REPEATING:
-        columns *= _tamed(surface, patch, pixels, by_parameters)
-    from_outlines = sum(
-        (_information(outline.predict(surface), outline_share) for outline, outline_share in outlines),
-        start=np.zeros((len(free), len(free))),
-    )
+        columns *= _tamed(surface, patch, pixels, depths.columns)
+    product = columns @ _smeared(columns, patch, pixels, likeness).T
+    return _sandwich(columns, product, scaled, likeness.independent_share, free, _of_outlines(surface, outlines))
+
+
+def covariance_of_differences(
+    whitened: Whitened,
+    fitted: tuple[Surface, Patch, Indices],
+    free: Bools,
+    noise: tuple[float, Likeness],
+    raw_sigma: float,
+    outlines: Outlines,
+) -> Floats:
+    """The same of a surface fitted to what is left of depths once foretold errors are taken off.
+
+    `noise` is of what is left, `raw_sigma` that of the depths.
+    """
+    (surface, patch, pixels), (sigma, likeness) = fitted, noise
+    left = whitened.predict(surface)
+    scaled = left.residual / sigma
+    columns = left.columns * ((tukey(scaled)[1] > 0) / sigma)
+    weights = raw_sigma / sigma * whitened.returned(columns)
+    product = weights @ _smeared(weights, patch, pixels, whitened.likeness).T
+    return _sandwich(columns, product, scaled, likeness.independent_share, free, _of_outlines(surface, outlines))
+
+
+def _sandwich(columns: Floats, product: Floats, scaled: Floats, share: float, free: Bools, outlines: Floats) -> Floats:
+    """The covariance H^-1 M H^-1 (k, k) of errors that are alike (Huber 1967), zero for what is not `free` (k,).
+
+    H is the information that was weighted with: of the derivatives (k, N) of residuals (N,), both in sigmas, of which
+    a share is independent, and of outlines (k, k). M is the variance of its gradient: J C J' of the derivatives, C
+    being the autocorrelation of errors, is the product; outlines, whose share is known, have their information itself.
+    """
+    weight = tukey(scaled)[1]
     believed = weight > 0
-    information = share * float(_response(scaled[believed]).mean()) * (columns @ columns.T) + from_outlines
+    information = share * float(_response(scaled[believed]).mean()) * (columns @ columns.T) + outlines
     spread_of_score = float((weight * scaled) @ (weight * scaled)) / max(float(believed.sum()), 1.0)
-    variance = share**2 * spread_of_score * (columns @ _smeared(columns, patch, pixels, likeness).T) + from_outlines
+    variance = share**2 * spread_of_score * product + outlines
     covariance = np.zeros_like(information)
     kept = np.ix_(free, free)
     inverse = np.linalg.pinv(information[kept], hermitian=True)
@@ -76,5 +102,10 @@ def _response(residual: Floats) -> Floats:
     return (1.0 - squared) * (1.0 - 5.0 * squared)
 
 
-def _information(prediction: Prediction, share: float) -> Floats:
-    return share * (prediction.columns * tukey(prediction.residual)[1]) @ prediction.columns.T
+def _of_outlines(surface: Surface, outlines: Outlines) -> Floats:
+    """What outlines tell (k, k) of a surface."""
+    total = np.zeros((len(surface.units(1.0)), len(surface.units(1.0))))
+    for outline, share in outlines:
+        prediction = outline.predict(surface)
+        total += share * (prediction.columns * tukey(prediction.residual)[1]) @ prediction.columns.T
+    return total

@@ -38,12 +38,6 @@ class Measurement(Protocol):
         """What the surface predicts for it."""
         ...
 
-    def chosen(self, index: Indices | Bools) -> "Measurement":
-        """Some of the N."""
-        ...
-
-    def __len__(self) -> int: ...
-
 
 @dataclass(frozen=True, eq=False)
 class Depths:
@@ -148,6 +142,10 @@ class Outline:
         """Some of the edges."""
         rays = np.ascontiguousarray(self.rays[:, index])
         return replace(self, rays=rays, sigma_px=self.sigma_px[index])
+
+
+Outlines = tuple[tuple[Outline, float], ...]
+"""Each with the share of its edges that is independent."""
 
 
 @dataclass(frozen=True, eq=False)

@@ -6,11 +6,11 @@ import numpy as np
 
 from rotrecon.arrays import Bools, Floats
 from rotrecon.rays.ball import Ball
-from rotrecon.rays.fitting import Outline
+from rotrecon.rays.fitting import Outlines
 from rotrecon.rays.lateral import Lateral
 from rotrecon.rays.losses import tukey
 from rotrecon.rays.patch import Patch
-from rotrecon.rays.ray_fit import RayFit, Sight, fine, predicted
+from rotrecon.rays.ray_fit import FINE_ROUNDS, MOST_DIFFERENCES, RayFit, Sight, by_differences, fine, predicted
 from rotrecon.rays.surfaces import Surface
 
 MATCHED = 0.25
@@ -34,10 +34,13 @@ WINDOWS_AT_MOST = 1.3
 """Times as rough as the inner ones, at most, windows alone make all depths (measured on simulated stereo)."""
 DECISIVE = 1.03
 """Ratio of their roughness at which the limbs themselves decide between windows and none."""
+BORNE_OUT, TELLS_MORE = 5.0, 0.9
+"""Standard deviations of a fit by which differences of its depths may have another size, and most they may have of its
+own."""
+SCOUTS = 3000
+"""Depths whose differences are asked first."""
 FEWEST_INDEPENDENT = 8.0
 """Inner depths that are fewer than that can judge nothing."""
-
-Outlines = tuple[tuple[Outline, float], ...]
 
 
 @dataclass(frozen=True, eq=False)
@@ -56,6 +59,9 @@ def settle(surface: Surface, task: Task) -> RayFit | None:
     whole = _fit(surface, task, Sight())
     if whole is None or surface.side > 0 or whole.likeness.alike < MATCHED:
         return whole
+    differenced = _by_differences(whole, task)
+    if differenced is not None:
+        return differenced
     inner = _fit(whole.surface, task, Sight(guard=INNER_GUARD))
     window_px = _odd(WINDOW_OVER_CORRELATION * max(whole.likeness.length_px, task.patch.noise.correlation_px))
     explicable = inner is None or whole.sigma < WINDOWS_AT_MOST * inner.sigma
@@ -80,6 +86,23 @@ def settle(surface: Surface, task: Task) -> RayFit | None:
 
 def _fit(surface: Surface, task: Task, sight: Sight) -> RayFit | None:
     return fine(surface, task.patch, task.units, task.free, sight, task.outlines)
+
+
+def _by_differences(whole: RayFit, task: Task) -> RayFit | None:
+    """The fit to differences of depths, or None where it contradicts that to the depths: limbs mislead it first.
+
+    Where only errors are alike they agree, and differences tell more (Gauss and Markov).
+    """
+    sizes = slice(whole.surface.size_place, None)
+    plain = whole.covariance[sizes, sizes]
+    fit = replace(whole, sight=Sight(differences=True))
+    for most, rounds in ((SCOUTS, 1), (MOST_DIFFERENCES, FINE_ROUNDS)):
+        fit = by_differences(fit, task.patch, task.units, most, rounds)
+        apart = _size(fit.surface) - _size(whole.surface)
+        inverse = np.linalg.pinv(plain + fit.covariance[sizes, sizes], hermitian=True)
+        if not apart @ inverse @ apart < BORNE_OUT**2:
+            return None
+    return fit if np.linalg.det(fit.covariance[sizes, sizes]) < TELLS_MORE**2 * np.linalg.det(plain) else None
 
 
 def _as_smooth(fit: RayFit, inner: RayFit) -> bool:

@@ -1,18 +1,19 @@
 """A surface fitted to all depths of a patch that are compared, and to an outline, each with the weight it has."""
 
 from collections.abc import Callable
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 from functools import cached_property, lru_cache, partial
 
 import numpy as np
 
 from rotrecon.arrays import Bools, Floats, Indices, freeze
 from rotrecon.rays.correlation import Likeness, likeness_of
-from rotrecon.rays.covariance import REPEATING, sandwich
-from rotrecon.rays.fitting import Depths, MatchedDepths, Measurement, Outline, Prediction, refine
-from rotrecon.rays.losses import robust_scale, tukey
+from rotrecon.rays.covariance import REPEATING, covariance_of_depths, covariance_of_differences
+from rotrecon.rays.fitting import Depths, MatchedDepths, Measurement, Outlines, Prediction, refine
+from rotrecon.rays.losses import TUKEY, robust_scale, tukey
 from rotrecon.rays.patch import Patch
 from rotrecon.rays.surfaces import Surface
+from rotrecon.rays.whitening import whitened
 
 FINE_ITERATIONS, FINE_ROUNDS = 8, 3
 OVERSAMPLED, LEAST_PIXELS = 20.0, 2500
@@ -21,6 +22,8 @@ HASTY_PIXELS = 2500
 """Enough for a first round, evenly; the next takes all that tell something new."""
 SETTLED_SIZE = 1e-4
 """A round that changes the radius by less than this share is the last."""
+MOST_DIFFERENCES, BAND_PX = 16000, 12
+"""Depths that are compared with their neighbours', and the width of the bands they stand in where there are more."""
 NEAR_PX = 4.0
 """Pixels so far outside the outline still speak for or against it."""
 INLIER_SIGMA = 3.0
@@ -39,6 +42,13 @@ class Sight:
     """Side of the matching window that is modelled; 1 for none."""
     guard: float = WHOLE
     """Pixels are left out whose ray passes farther beside the axis than this share of the radius."""
+    differences: bool = False
+    """Whether depths are compared with their neighbours', so that what these err by too does not count."""
+
+    @property
+    def whole(self) -> bool:
+        """Whether all depths are taken as they are."""
+        return self.window_px == 1 and self.guard >= 1
 
 
 @dataclass(frozen=True, eq=False)
@@ -47,7 +57,7 @@ class RayFit:
 
     surface: Surface
     sight: Sight
-    outlines: tuple[tuple[Outline, float], ...]
+    outlines: Outlines
     """Each with its independent share."""
     free: Bools
     """(k,) parameters that were fitted."""
@@ -85,7 +95,7 @@ def fine(
     units: Floats,
     free: Bools,
     sight: Sight,
-    outlines: tuple[tuple[Outline, float], ...] = (),
+    outlines: Outlines = (),
 ) -> RayFit | None:
     """Rounds over the pixels within the outline and close to it; None when there are too few to hold the parameters."""
     share, alike, size_m, judge = 1.0, 0.0, surface.size_m, surface
@@ -111,7 +121,38 @@ def fine(
         if abs(surface.size_m - size_m) < SETTLED_SIZE * size_m and not hasty:
             break
         size_m = surface.size_m
-    return _finished(surface, patch, pixels, free, sight, outlines)
+    fit = _finished(surface, patch, pixels, free, sight, outlines)
+    return by_differences(fit, patch, units, MOST_DIFFERENCES, FINE_ROUNDS) if sight.differences else fit
+
+
+def by_differences(fit: RayFit, patch: Patch, units: Floats, most: int, rounds: int) -> RayFit:
+    """A fit moved to the generalised least squares of about so many of its depths, in so many rounds."""
+    surface, own_covariance = fit.surface, fit.own_covariance
+    for _ in range(rounds):
+        size_m = surface.size_m
+        pixels = near(surface, patch, patch.drawn & np.isfinite(patch.depth_m), fit.sight)
+        pixels = _banded(pixels, patch.shape[1], most)
+        raw = depths_of(patch, pixels).predict(surface).residual
+        raw_sigma, raw_likeness = _noise_of(patch, pixels, raw)
+        pixels = pixels[np.abs(raw) < TUKEY * raw_sigma]
+        left = whitened(depths_of(patch, pixels), pixels, patch.shape, raw_likeness)
+        noise = _noise_of(patch, pixels, left.predict(surface).residual)
+        measurements: list[Measurement] = [left, *(outline for outline, _ in fit.outlines)]
+        weighting = [(noise[0], noise[1].independent_share), *((1.0, share) for _, share in fit.outlines)]
+        surface = refine(surface, measurements, weighting, tukey, fit.free, units, FINE_ITERATIONS).surface
+        fitted = (surface, patch, pixels)
+        own_covariance = partial(covariance_of_differences, left, fitted, fit.free, noise, raw_sigma, fit.outlines)
+        if abs(surface.size_m - size_m) < SETTLED_SIZE * size_m:
+            break
+    residual = predicted(patch, fit.pixels, surface, fit.sight).residual
+    return replace(fit, surface=surface, residual=residual, own_covariance=own_covariance)
+
+
+def _banded(pixels: Indices, width: int, most: int) -> Indices:
+    """Pixels of a patch in slanted bands so far apart that about so many are left; most of their neighbours are too."""
+    apart = -(-len(pixels) // most)
+    row, column = np.divmod(pixels, width)
+    return pixels[(row + column) // BAND_PX % apart == 0] if apart > 1 else pixels
 
 
 def _finished(
@@ -120,12 +161,12 @@ def _finished(
     pixels: Indices,
     free: Bools,
     sight: Sight,
-    outlines: tuple[tuple[Outline, float], ...],
+    outlines: Outlines,
 ) -> RayFit:
     """A fit that has come to its end."""
     depths = _measured(patch, pixels, surface, sight).predict(surface)
     sigma, likeness = _noise_of(patch, pixels, depths.residual)
-    own = partial(sandwich, depths, (surface, patch, pixels), free, (sigma, likeness), outlines)
+    own = partial(covariance_of_depths, depths, (surface, patch, pixels), free, (sigma, likeness), outlines)
     return RayFit(surface, sight, outlines, free, pixels, depths.residual, sigma, likeness, own)
 
 

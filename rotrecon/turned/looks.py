@@ -6,7 +6,7 @@ import numpy as np
 
 from rotrecon.arrays import Bools, Floats, Indices, freeze
 from rotrecon.noise import RayNoise
-from rotrecon.rays.fitting import Outline
+from rotrecon.rays.fitting import Outlines
 from rotrecon.rays.lateral import Lateral
 from rotrecon.rays.lines import Lines
 from rotrecon.rays.patch import Patch
@@ -148,7 +148,7 @@ def looks_at(surface: Lateral, patch: Patch, heights_m: Floats, guard: float, mo
     )
 
 
-def grazes_at(surface: Turned, outlines: tuple[tuple[Outline, float], ...], heights_m: Floats) -> Grazes | None:
+def grazes_at(surface: Turned, outlines: Outlines, heights_m: Floats) -> Grazes | None:
     """The edges of outlines, with their independent shares, by the heights (n,) that they are nearest to."""
     if not outlines:
         return None

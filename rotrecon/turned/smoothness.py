@@ -1,10 +1,10 @@
 """The curve of a turned surface through radii that were seen, and the prior that keeps it smooth as the data ask."""
 
-from dataclasses import dataclass, replace
+from dataclasses import dataclass
 
 import numpy as np
 
-from rotrecon.arrays import Bools, Floats, Indices, freeze
+from rotrecon.arrays import Bools, Floats, freeze
 from rotrecon.rays.fitting import UNSCALED, Prediction
 from rotrecon.rays.surfaces import Surface
 from rotrecon.turned.turned import AXIS_PARAMETERS, Turned
@@ -22,31 +22,14 @@ class Smoothness:
 
     scale_m: float
     """Standard deviation of a second difference."""
-    rows: Indices
-    """(n,) which of the K - 2 are asked for."""
-
-    @staticmethod
-    def of(surface: Turned, scale_m: float) -> "Smoothness":
-        """That of all second differences of a surface."""
-        return Smoothness(scale_m, np.arange(len(surface.coefficients_m) - 2, dtype=np.int32))
-
-    def __post_init__(self) -> None:
-        freeze(self)
-
-    def __len__(self) -> int:
-        return len(self.rows)
 
     def predict(self, surface: Surface) -> Prediction:
         """Second differences; what is seen is none. Raises TypeError for a surface that has no coefficients."""
         if not isinstance(surface, Turned):
             raise TypeError("only a turned surface has a profile to be smooth")
-        differences = second_differences(len(surface.coefficients_m))[self.rows] / self.scale_m
-        axis = np.zeros((AXIS_PARAMETERS, len(self.rows)))
+        differences = second_differences(len(surface.coefficients_m)) / self.scale_m
+        axis = np.zeros((AXIS_PARAMETERS, len(differences)))
         return Prediction(np.concatenate([axis, differences.T]), UNSCALED, -differences @ surface.coefficients_m)
-
-    def chosen(self, index: Indices | Bools) -> "Smoothness":
-        """Some of the differences."""
-        return replace(self, rows=self.rows[index])
 
 
 @dataclass(frozen=True, eq=False)
@@ -63,9 +46,6 @@ class Radii:
     def __post_init__(self) -> None:
         freeze(self)
 
-    def __len__(self) -> int:
-        return len(self.height_m)
-
     def predict(self, surface: Surface) -> Prediction:
         """The surface's radii there. Raises TypeError for a surface that is not turned."""
         if not isinstance(surface, Turned):
@@ -74,10 +54,6 @@ class Radii:
         return Prediction(
             gradient, 1.0 / self.sigma_m, (self.radius_m - surface.curve(self.height_m)[0]) / self.sigma_m
         )
-
-    def chosen(self, index: Indices | Bools) -> "Radii":
-        """Some of the heights."""
-        return Radii(self.height_m[index], self.radius_m[index], self.sigma_m[index], self.lever[:, index])
 
 
 def second_differences(count: int) -> Floats:

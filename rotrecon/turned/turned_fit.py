@@ -7,7 +7,7 @@ import numpy as np
 from rotrecon.arrays import Bools, Floats, Indices, freeze
 from rotrecon.extent import Extent
 from rotrecon.rays.correlation import Likeness, likeness_of
-from rotrecon.rays.fitting import Measurement, Outline, refine
+from rotrecon.rays.fitting import Measurement, Outlines, refine
 from rotrecon.rays.lateral import Lateral
 from rotrecon.rays.losses import tukey
 from rotrecon.rays.patch import Patch
@@ -47,7 +47,7 @@ class _Task:
     patch: Patch
     free: Bools
     """(4,) which of the axis' parameters are."""
-    outlines: tuple[tuple[Outline, float], ...]
+    outlines: Outlines
 
     def __post_init__(self) -> None:
         freeze(self)
@@ -150,7 +150,7 @@ def _smoothed(axis: _Axis, task: _Task) -> RayFit:
     curve = np.arange(len(units)) >= AXIS_PARAMETERS
     scale_m, information = FIRST_SHARE * surface.size_m, np.eye(len(units))
     for _ in range(SMOOTHINGS):
-        measurements: list[Measurement] = [axis.radii, Smoothness.of(surface, scale_m)]
+        measurements: list[Measurement] = [axis.radii, Smoothness(scale_m)]
         refined = refine(surface, measurements, [(1.0, 1.0), UNBENT], tukey, curve, units, ITERATIONS)
         assert isinstance(refined.surface, Turned)
         surface, information = refined.surface, refined.information

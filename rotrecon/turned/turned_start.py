@@ -7,7 +7,7 @@ import numpy as np
 from rotrecon.arrays import Bools, Floats, Indices, freeze
 from rotrecon.extent import Extent
 from rotrecon.rays.coarse_fit import OUTLINE_SCALE
-from rotrecon.rays.fitting import Measurement, Outline, Prediction, refine
+from rotrecon.rays.fitting import Measurement, Outlines, Prediction, refine
 from rotrecon.rays.lateral import Lateral
 from rotrecon.rays.losses import TO_SIGMA, cauchy
 from rotrecon.rays.patch import Patch
@@ -77,7 +77,7 @@ def turned_start(
     lateral: Lateral | None,
     held: Bools,
     extent: Extent | None,
-    outlines: tuple[tuple[Outline, float], ...],
+    outlines: Outlines,
     knots: int,
 ) -> Turned | None:
     """A rough turned surface, from the axis of a lateral one or from axes at several slants behind the stroke.
@@ -128,13 +128,11 @@ def longest_run(edge: Ridge) -> Ridge:
     return Ridge(edge.points_m[run], edge.width_m[run])
 
 
-def _followed(
-    start: Turned, points: Points, outlines: tuple[tuple[Outline, float], ...], held: Bools
-) -> tuple[float, Turned]:
+def _followed(start: Turned, points: Points, outlines: Outlines, held: Bools) -> tuple[float, Turned]:
     """Cost and surface after a round over the outline and the points that are close to a start."""
     size_m = float(np.median(start.curve(np.linspace(start.low_m, start.high_m, ROUGH_KNOTS))[0]))
     close = points.chosen(_close(start, points.points_m))
-    measurements: list[Measurement] = [close, Smoothness.of(start, STIFF_SHARE * size_m)]
+    measurements: list[Measurement] = [close, Smoothness(STIFF_SHARE * size_m)]
     measurements += [outline for outline, _ in outlines]
     scale = max(TO_SIGMA * float(np.median(np.abs(close.predict(start).residual))), 1.0) if len(close) else 1.0
     edges = [(max(OUTLINE_SCALE * scale, 1.0), share) for _, share in outlines]
