@@ -7,9 +7,10 @@ import numba  # pyright: ignore[reportMissingTypeStubs]
 
 NUMBA = cast(Any, numba)
 """It comes without types."""
-FLOAT, FLAG = NUMBA.float64, NUMBA.boolean
+FLOAT, FLAG, COUNT = NUMBA.float64, NUMBA.boolean, NUMBA.int64
 VECTOR = NUMBA.types.Array(NUMBA.float64, 1, "C", readonly=True)
 MATRIX = NUMBA.types.Array(NUMBA.float64, 2, "C", readonly=True)
+CUBE = NUMBA.types.Array(NUMBA.float64, 3, "C", readonly=True)
 """Arrays without gaps, which the compiled function does not write to."""
 
 Function = TypeVar("Function", bound=Callable[..., Any])

@@ -29,7 +29,7 @@ FITTED = """
     rays.traces rays.lateral_rays rays.lateral rays.ball_rays rays.ball rays.surfaces rays.patch rays.correlation
     rays.losses rays.fitting rays.whitening rays.covariance rays.ray_fit
     rays.coarse_fit rays.starts
-    edges.edge_lines edges.shading edges.edge_model edges.edge_steps edges.edges
+    edges.light edges.edge_lines edges.shading edges.step_likelihood edges.edge_model edges.edge_steps edges.edges
     rays.limbs rays.guard rays.hypotheses rays.robust
 """.split()
 TURNED = """

@@ -7,7 +7,8 @@ from hypothesis import strategies as st
 
 from rotrecon.camera import PinholeCamera
 from rotrecon.edges.edge_steps import CLEAR_PX
-from rotrecon.edges.edges import LEAST_HALF_WIDTH_PX, LINEAR_LIGHT, Edges, find_edges
+from rotrecon.edges.edges import LEAST_HALF_WIDTH_PX, Edges, find_edges
+from rotrecon.edges.light import LINEAR_LIGHT
 from rotrecon.simulation.ideal_drawing import outline_px
 from rotrecon.simulation.simulate import simulate
 

@@ -11,9 +11,10 @@ from dataclasses import dataclass
 import numpy as np
 from scipy.special import ndtr  # pyright: ignore[reportMissingTypeStubs, reportUnknownVariableType]
 
-from rotrecon.arrays import Bools, Floats
-from rotrecon.edges.edge_lines import Line, Stretch, bell, filtered
+from rotrecon.arrays import Floats
+from rotrecon.edges.edge_lines import ONE, Line, Stretch, bell, filtered
 from rotrecon.edges.shading import Shading, shading_of
+from rotrecon.edges.step_likelihood import log_likelihoods
 
 LEAST_ZONE_PX = 1.0
 """Least width of a zone where a colour is one side's alone: with less, there is no telling how it changes."""
@@ -38,32 +39,28 @@ class Profiles:
     across_px: Floats
     """(T,) signed distance from the line, outward; 1 px apart where that is clear of the edge."""
     light: Floats
-    """(N, T, 3) linear light."""
+    """(3, T, N) linear light."""
     deep_px: Floats
     """(D,) distances farther inside, which tell how the object is shaded."""
     deep: Floats
-    """(N, D, 3) linear light there."""
-
-
-@dataclass(frozen=True, eq=False)
-class _Side:
-    """One side's colours, in three channels whose textures are independent."""
-
-    level: Floats
-    """(3, T, N)"""
-    covariance: Floats
-    """(3, T, T) of the texture."""
+    """(3, D, N) linear light there."""
 
 
 @dataclass(frozen=True, eq=False)
 class Model:
-    """What is expected of profiles, and what was seen."""
+    """What is expected of profiles, and what was seen, in three channels whose textures are independent."""
 
     across_px: Floats
     seen: Floats
-    """(3, T, N)"""
-    inner: _Side
-    outer: _Side
+    """(3, T, N) less the level of the background."""
+    step: Floats
+    """(3, N) by how much the object's level is above the background's at the middle of its zone."""
+    background: Floats
+    """(3, T) what the background changes by across."""
+    inner: Floats
+    """(3, T, T) covariance of the object's texture."""
+    outer: Floats
+    """(3, T, T) of the background's."""
     shading: Shading
     channels: Floats
     """(3, 3) of colours."""
@@ -74,18 +71,11 @@ class Model:
 
     def log_likelihood(self, place_px: Floats, blur_px: Floats, every: int = 1) -> Floats:
         """Of steps at K places with K blurs: (K, 3, N), by channel; `every` so many profiles."""
-        inner = _covered((place_px[:, None] - self.across_px) / blur_px[:, None])[:, None]
-        outer = 1 - inner
-        covariance = self.inner.covariance * inner[..., None] * inner[..., None, :]
-        covariance += self.outer.covariance * outer[..., None] * outer[..., None, :]
-        covariance += self.noise[:, None, None] * np.eye(len(self.across_px))
-        root = np.linalg.cholesky(covariance)
-        step = self.inner.level[..., ::every] - self.outer.level[..., ::every]
-        step = step + (self.shading.at(place_px) @ self.channels).transpose(0, 2, 1)[..., None]
-        rest = (self.seen - self.outer.level)[..., ::every] - inner[..., None] * step
-        white = np.linalg.inv(root) @ rest
-        spread = np.log(np.diagonal(root, axis1=-2, axis2=-1)).sum(axis=-1)
-        return -0.5 * np.einsum("kctn,kctn->kcn", white, white) - spread[..., None]
+        inner = _covered((place_px[:, None] - self.across_px) / blur_px[:, None])
+        shape = np.ascontiguousarray((self.shading.at(place_px) @ self.channels).transpose(2, 0, 1))
+        shape -= self.background[:, None]
+        seen, step = (np.ascontiguousarray(of_all[..., ::every]) for of_all in (self.seen, self.step))
+        return log_likelihoods(inner, shape, seen, step, self.inner, self.outer, self.noise)
 
 
 def _covered(distance: Floats) -> Floats:
@@ -97,56 +87,69 @@ def model_of(profiles: Profiles, clear_px: float) -> Model:
     """Of profiles on which a colour is one side's alone so far from the line."""
     across, light = profiles.across_px, profiles.light
     clear = min(clear_px, -float(across[0]) - LEAST_ZONE_PX)
-    along_rows = LEVEL_PX / profiles.stretch.spacing_px
-    shading = _shading(profiles, across <= -clear)
-    shape = shading.at(np.zeros(1))[0]
-    inner_level, inner_texture = _level(light, across <= -clear, shape, along_rows)
-    outer_level, outer_texture = _level(light, across >= clear, _slope(across, light, across >= clear), along_rows)
+    inside = light[:, : int(np.searchsorted(across, -clear, side="right"))]
+    outside = light[:, int(np.searchsorted(across, clear)) :]
+    along = bell(LEVEL_PX / profiles.stretch.spacing_px)
+    shading = _shading(profiles, inside)
+    shape, slope = shading.at(np.zeros(1))[0].T, _slope(across, outside)
+    inner_level, inner_texture = _level(inside, shape[:, : inside.shape[1]], along)
+    outer_level, outer_texture = _level(outside, slope[:, -outside.shape[1] :], along)
     # the channels in which both textures are uncorrelated
     whiten = np.linalg.inv(np.linalg.cholesky(_covariance(outer_texture)))
     ratio, turn = np.linalg.eigh(whiten @ _covariance(inner_texture) @ whiten.T)
     channels = np.asarray(whiten.T @ turn, dtype=np.float64)
     noise = NOISE**2 * (channels**2).sum(axis=0)
-    inner = _Side(_planes((inner_level - shape) @ channels), _process(across, inner_texture @ channels, ratio))
-    outer = _Side(_planes(outer_level @ channels), _process(across, outer_texture @ channels, np.ones(3)))
+    step = channels.T @ (inner_level - outer_level)
     at_edge = int(np.abs(across).argmin())
-    difference = (inner_level[:, at_edge] @ channels).T - outer.level[:, at_edge]
-    contrast = np.sqrt((difference**2 / (ratio + 1 + noise)[:, None]).sum(axis=0))
-    return Model(across, _planes(light @ channels), inner, outer, shading, channels, noise, contrast)
+    difference = step + channels.T @ (shape - slope)[:, at_edge, None]
+    return Model(
+        across_px=across,
+        seen=_turned(light - outer_level[:, None] - slope[..., None], channels),
+        step=step,
+        background=channels.T @ slope,
+        inner=_process(across, _turned(inner_texture, channels), ratio),
+        outer=_process(across, _turned(outer_texture, channels), np.ones(3)),
+        shading=shading,
+        channels=channels,
+        noise=noise,
+        contrast=np.sqrt((difference**2 / (ratio + 1 + noise)[:, None]).sum(axis=0)),
+    )
 
 
-def _level(light: Floats, zone: Bools, shape: Floats, along_rows: float) -> tuple[Floats, Floats]:
-    """A side's level (N, T, 3), which has a shape (T, 3) across, and its texture (N, Z, 3) where it is alone."""
-    level = filtered(light[:, zone].mean(axis=1), bell(along_rows))[:, None] + shape
-    return level, light[:, zone] - level[:, zone]
+def _level(light: Floats, shape: Floats, along: Floats) -> tuple[Floats, Floats]:
+    """A side's level (3, N) where it is alone, with a shape (3, Z) across, and its texture (3, Z, N) there."""
+    level = filtered(light.mean(axis=1), ONE, along)
+    return level, light - level[:, None] - shape[..., None]
 
 
-def _slope(across_px: Floats, light: Floats, zone: Bools) -> Floats:
-    """What (T, 3) a background's light changes by across, carried on from the zone where it is alone."""
-    distance = across_px - across_px[zone].mean()
-    mean = light[:, zone].mean(axis=0)
-    return distance[:, None] * (distance[zone] @ mean / (distance[zone] ** 2).sum())
+def _slope(across_px: Floats, light: Floats) -> Floats:
+    """What (3, T) a background's light changes by across, carried on from the zone (3, Z, N) where it is alone."""
+    zone = across_px[-light.shape[1] :]
+    distance, own = across_px - zone.mean(), zone - zone.mean()
+    return (light.mean(axis=2) @ own / (own @ own))[:, None] * distance
 
 
-def _shading(profiles: Profiles, zone: Bools) -> Shading:
-    seen_px = np.concatenate([profiles.deep_px, profiles.across_px[zone]])
-    seen = np.concatenate([profiles.deep, profiles.light[:, zone]], axis=1)
-    stretch = profiles.stretch
+def _shading(profiles: Profiles, inside: Floats) -> Shading:
+    """Of the object, from its light (3, Z, N) beside the edge and farther inside."""
+    stretch, zone = profiles.stretch, inside.shape[1]
+    seen_px = np.concatenate([profiles.deep_px, profiles.across_px[:zone]])
+    seen = np.concatenate([profiles.deep, inside], axis=1)
     independent = max(len(stretch) * stretch.spacing_px / CORRELATED_PX, 1.0)
     return shading_of(profiles.across_px, zone, float(np.median(stretch.half_width_px)), seen_px, seen, independent)
 
 
 def _covariance(texture: Floats) -> Floats:
-    flat = texture.reshape(-1, 3)
-    return flat.T @ flat / len(flat) + COLOUR_FLOOR * np.eye(3)
+    flat = texture.reshape(3, -1)
+    return flat @ flat.T / flat.shape[1] + COLOUR_FLOOR * np.eye(3)
 
 
 def _process(across_px: Floats, texture: Floats, variance: Floats) -> Floats:
-    """Covariance (3, T, T) of a texture (N, Z, 3), 1 px apart, whose correlation falls off exponentially."""
-    together = (texture[:, 1:] * texture[:, :-1]).mean(axis=(0, 1))
-    correlation = (together / ((texture**2).mean(axis=(0, 1)) + COLOUR_FLOOR)).clip(*CORRELATION)
+    """Covariance (3, T, T) of a texture (3, Z, N), 1 px apart, whose correlation falls off exponentially."""
+    together = (texture[:, 1:] * texture[:, :-1]).mean(axis=(1, 2))
+    correlation = (together / ((texture**2).mean(axis=(1, 2)) + COLOUR_FLOOR)).clip(*CORRELATION)
     return variance[:, None, None] * correlation[:, None, None] ** np.abs(across_px[:, None] - across_px)
 
 
-def _planes(light: Floats) -> Floats:
-    return np.ascontiguousarray(light.transpose(2, 1, 0))
+def _turned(light: Floats, channels: Floats) -> Floats:
+    """Colours (3, ...) in other channels (3, 3)."""
+    return (channels.T @ light.reshape(3, -1)).reshape(light.shape)

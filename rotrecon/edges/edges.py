@@ -2,16 +2,16 @@
 
 from dataclasses import dataclass, replace
 from functools import cached_property
-from typing import Any, cast
+from typing import Any
 
 import numpy as np
 from numpy.typing import ArrayLike, NDArray
-from scipy import ndimage  # pyright: ignore[reportMissingTypeStubs]
 
 from rotrecon.arrays import Bools, Bytes, Cloud, Floats, Indices, freeze
 from rotrecon.edges.edge_lines import BEYOND_PX, Line, Stretch, find_line
 from rotrecon.edges.edge_model import Profiles
 from rotrecon.edges.edge_steps import Steps, find_steps
+from rotrecon.edges.light import LightSpline
 
 ACROSS_PX = np.array([-5, -4, -3, -2, -1.5, -1, -0.5, 0, 0.5, 1, 1.5, 2, 3, 4, 5])
 """Samples across an edge: half a pixel apart where it may be, one where texture is learnt, and no farther off, where
@@ -36,19 +36,6 @@ MOVED_PX, MOVES, FARTHEST_PX = 0.2, 6, 2.5
 farther from where it began. Not inward: what shading there is on the object would draw it on and on."""
 LARGEST_SIGMA_PX = 0.5
 """Of a line to be trusted: more says nothing that depth does not know."""
-
-
-SCIPY = cast(Any, ndimage)
-"""It comes without types."""
-
-
-def _decoded() -> Floats:
-    encoded = np.arange(256) / 255.0
-    return np.where(encoded <= 0.04045, encoded / 12.92, ((encoded + 0.055) / 1.055) ** 2.4)
-
-
-LINEAR_LIGHT = _decoded()
-"""Of sRGB values (IEC 61966-2-1): a pixel that shows two things is their mean in light, not in display values."""
 
 
 @dataclass(frozen=True)
@@ -105,9 +92,9 @@ class _Crop:
     """(2,) its first column and row in the whole."""
 
     @cached_property
-    def splines(self) -> list[Floats]:
-        """Coefficients of each channel in linear light."""
-        return [SCIPY.spline_filter(LINEAR_LIGHT[self.image[..., channel]]) for channel in range(3)]
+    def light(self) -> LightSpline:
+        """Its linear light."""
+        return LightSpline.of(self.image)
 
     @staticmethod
     def of(image: Bytes, point_px: Floats, reach_px: float) -> "_Crop":
@@ -199,11 +186,8 @@ def _profiles(crop: _Crop, clear: list[tuple[Indices, Stretch, Line]]) -> list[P
     for _, stretch, line in clear:
         half_width_px = float(stretch.half_width_px.min())
         across, deep = ACROSS_PX[-half_width_px <= ACROSS_PX], DEEP_PX[-SHADED_SHARE * half_width_px <= DEEP_PX]
-        place = stretch.profiles_at(line.offset_px, np.concatenate([across, deep]))
-        at = [place[..., 1], place[..., 0]]
-        channels = [
-            SCIPY.map_coordinates(spline, at, order=3, prefilter=False, mode="nearest") for spline in crop.splines
-        ]
-        light, inside = np.split(np.stack(channels, axis=-1), [len(across)], axis=1)
+        light, inside = (
+            crop.light.across(stretch.point_px, stretch.normal_px, line.offset_px, places) for places in (across, deep)
+        )
         profiles.append(Profiles(stretch, line, across, light, deep, inside))
     return profiles

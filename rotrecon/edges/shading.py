@@ -4,7 +4,8 @@ from dataclasses import dataclass
 
 import numpy as np
 
-from rotrecon.arrays import Bools, Floats
+from rotrecon.arrays import Floats
+from rotrecon.compiled import COUNT, CUBE, FLOAT, MATRIX, VECTOR, compiled
 
 BENT_SHARE = 0.5
 """Of an even surface's light, how much changes from its middle to its limb in the root of the distance: about as much
@@ -25,42 +26,69 @@ class Shading:
 
     across_px: Floats
     """(T,) where it is wanted."""
-    zone: Bools
-    """(T,) where levels are taken."""
+    zone: int
+    """How many of the first of these are where levels are taken."""
     half_width_px: float
     seen_px: Floats
     """(D,) where it was seen."""
     light: Floats
-    """(D, 3) that was seen there."""
+    """(3, D) that was seen there."""
     doubt: Floats
     """(3,) variance of what was seen, over that of the root's amount that is expected."""
 
     def at(self, place_px: Floats) -> Floats:
         """Light (K, T, 3), linear, over the mean of the zone, with the limb at one of K places."""
-        line = np.stack([np.ones(len(self.seen_px)), self.seen_px], axis=1)
-        fit = np.linalg.pinv(line)
-        bent = self._bent(place_px, self.seen_px)
-        own = bent - bent @ fit.T @ line.T
-        amount = (own @ self.light) / ((own**2).sum(axis=1)[:, None] + self.doubt)
-        slope = fit[1] @ self.light - (bent @ fit[1])[:, None] * amount
-        shape = self._bent(place_px, self.across_px)[..., None] * amount[:, None]
-        shape = shape + self.across_px[:, None] * slope[:, None]
-        return shape - shape[:, self.zone].mean(axis=1, keepdims=True)
+        return _at(place_px, self.across_px, self.zone, self.half_width_px, self.seen_px, self.light, self.doubt)
 
-    def _bent(self, place_px: Floats, across_px: Floats) -> Floats:
-        """Cosine (K, D) of the surface's angle to the picture's plane across the stretch."""
-        depth = ((place_px[:, None] - across_px) / self.half_width_px).clip(0, 1)
-        return np.sqrt(depth * (2 - depth))
+
+@compiled(FLOAT, VECTOR, FLOAT)
+def _bent(place_px: float, across_px: Floats, half_width_px: float) -> Floats:
+    """Cosine (D,) of the surface's angle to the picture's plane across the stretch, with the limb at a place."""
+    bent = np.empty(len(across_px))
+    for i in range(len(across_px)):
+        depth = min(max((place_px - across_px[i]) / half_width_px, 0.0), 1.0)
+        bent[i] = np.sqrt(depth * (2 - depth))
+    return bent
+
+
+@compiled(VECTOR, VECTOR, COUNT, FLOAT, VECTOR, MATRIX, VECTOR)
+def _at(
+    place_px: Floats, across_px: Floats, zone: int, half_width_px: float, seen_px: Floats, light: Floats, doubt: Floats
+) -> Floats:
+    """See `Shading.at`: what is not a straight line of the root is fitted to what is none of the light."""
+    shape = np.empty((len(place_px), len(across_px), 3))
+    off = seen_px - seen_px.mean()
+    slopes = off / (off * off).sum()
+    for k in range(len(place_px)):
+        seen_bent, bent = _bent(place_px[k], seen_px, half_width_px), _bent(place_px[k], across_px, half_width_px)
+        bent_slope = (seen_bent * slopes).sum()
+        own = seen_bent - seen_bent.mean() - bent_slope * off
+        for c in range(3):
+            amount = (own * light[c]).sum() / ((own * own).sum() + doubt[c])
+            slope = (light[c] * slopes).sum() - bent_slope * amount
+            line = bent * amount + across_px * slope
+            shape[k, :, c] = line - line[:zone].mean()
+    return shape
+
+
+@compiled(CUBE)
+def _medians(values: Floats) -> Floats:
+    """Medians (3, D) of values (3, D, N)."""
+    found = np.empty(values.shape[:2])
+    for i in range(values.shape[0]):
+        for j in range(values.shape[1]):
+            found[i, j] = np.median(values[i, j])
+    return found
 
 
 def shading_of(
-    across_px: Floats, zone: Bools, half_width_px: float, seen_px: Floats, seen: Floats, independent: float
+    across_px: Floats, zone: int, half_width_px: float, seen_px: Floats, seen: Floats, independent: float
 ) -> Shading:
-    """From light (N, D, 3) at distances (D,), the last of which are the zone's; so many of the N are independent."""
-    light = np.median(seen, axis=0)
-    expected = BENT_SHARE * np.abs(light).mean(axis=0)
-    variance = (seen - light).var(axis=(0, 1)) / independent + NOISE**2
+    """From light (3, D, N) at distances (D,), the last of which are the zone's; so many of the N are independent."""
+    light = _medians(seen)
+    expected = BENT_SHARE * np.abs(light).mean(axis=1)
+    variance = (seen - light[..., None]).var(axis=(1, 2)) / independent + NOISE**2
     # on what is too narrow to be seen farther inside, blur would pass for shading
-    told = len(seen_px) > np.count_nonzero(zone)
+    told = len(seen_px) > zone
     doubt = variance / np.maximum(expected**2, LEAST_VARIANCE) if told else np.full(3, np.inf)
     return Shading(across_px, zone, half_width_px, seen_px, light, doubt)
