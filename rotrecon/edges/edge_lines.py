@@ -8,8 +8,8 @@ import cv2
 import numpy as np
 from numpy.typing import NDArray
 
-from rotrecon.arrays import Floats, freeze
-from rotrecon.compiled import MATRIX, VECTOR, compiled
+from rotrecon.arrays import Cloud, Floats, freeze
+from rotrecon.compiled import FLOAT, MATRIX, NUMBA, VECTOR, compiled
 
 STEP_PX = 0.5
 """Distance of the samples along a normal, and of the lines tried; each is then moved onto its own edges."""
@@ -43,6 +43,9 @@ ONE = np.ones(1)
 """Weights that leave values as they are."""
 BEND_PRIOR = 0.02
 """Weight of no bend against all votes, where lines are moved onto edges."""
+UNHELD = 1e-9
+"""Weight of no shift and no tilt, so that a line without edges is one still."""
+COLOURS = NUMBA.types.Array(NUMBA.float32, 3, "C", readonly=True)
 
 
 @dataclass(frozen=True, eq=False)
@@ -70,24 +73,25 @@ class Stretch:
     @cached_property
     def is_round(self) -> bool:
         """Whether its normals turn so much that a move along one of them is none along another."""
-        return float(np.abs(np.diff(np.unwrap(np.arctan2(*self.normal_px.T[::-1])))).sum()) > ROUND_RAD
+        x, y = self.normal_px.T
+        turn = np.arctan2(x[:-1] * y[1:] - y[:-1] * x[1:], x[:-1] * x[1:] + y[:-1] * y[1:])
+        return float(np.abs(turn).sum()) > ROUND_RAD
 
+    @cached_property
     def shapes(self) -> Floats:
         """How far its points go along their normals, (N, 3), where the whole is moved by 1 px in one of three ways.
 
         A straight stretch is shifted, tilted, bent; a round one grows, and goes to the right, and down.
         """
-        first = np.ones(len(self))
+        shapes = np.ones((len(self), 3))
         if self.is_round:
-            return np.stack([first, *self.normal_px.T], axis=1)
+            shapes[:, 1:] = self.normal_px
+            return shapes
         steps = np.linalg.norm(np.diff(self.point_px, axis=0), axis=1)
         place = np.concatenate([[0.0], np.cumsum(steps)]) / max(float(steps.sum()), STEP_PX)
         along = 2 * place - 1
-        return np.stack([first, along, along**2 - 1 / 3], axis=1)
-
-    def profiles_at(self, offset_px: Floats, across_px: Floats) -> Floats:
-        """Places (N, T, 2) at signed distances (T,) along the normals from points moved by (N,)."""
-        return self.point_px[:, None] + (offset_px[:, None] + across_px)[..., None] * self.normal_px[:, None]
+        shapes[:, 1], shapes[:, 2] = along, along**2 - 1 / 3
+        return shapes
 
 
 @dataclass(frozen=True, eq=False)
@@ -132,8 +136,7 @@ def filtered(values: NDArray[np.floating[Any]], down: Floats, right: Floats = ON
 
 def find_line(picture: NDArray[np.float32], stretch: Stretch, reach_px: float) -> Line:
     """The outermost well supported line of edges within reach; `picture` is (H, W, 3) in display values."""
-    votes = _votes(picture, stretch, reach_px)
-    shapes = stretch.shapes()
+    votes, shapes = _votes(picture, stretch, reach_px), stretch.shapes
     shift, bend = _moves(stretch, reach_px)
     rows = np.linspace(0, len(stretch) - 1, min(len(stretch), ROWS)).round().astype(np.intp)
     places = (bend @ shapes[rows, 1:].T - votes.across_px[0]) / STEP_PX
@@ -143,78 +146,119 @@ def find_line(picture: NDArray[np.float32], stretch: Stretch, reach_px: float) -
     tops = (best >= OUTER_SHARE * best.max()) & (best >= around[:-2]) & (best >= around[2:])
     chosen = int(np.flatnonzero(tops)[-1])
     start = shapes @ np.array([shift[chosen], *bend[support[chosen].argmax()]])
-    offset = _onto_edges(votes, shapes, start)
-    others = np.where(np.abs(votes.across_px - offset[:, None]) < SAME_LINE_PX, 0.0, votes.share)
-    return Line(offset, float(best[chosen]), float(_support(others[rows], shift / STEP_PX, places).max()))
+    offset = _onto_edges(votes.across_px, votes.place_px, votes.share, shapes, start)
+    others = np.where(np.abs(votes.across_px - offset[rows, None]) < SAME_LINE_PX, 0.0, votes.share[rows])
+    return Line(offset, float(best[chosen]), float(_support(others, shift / STEP_PX, places).max()))
 
 
 def _votes(picture: NDArray[np.float32], stretch: Stretch, reach_px: float) -> _Votes:
     count = int(np.ceil((reach_px + BEYOND_PX) / STEP_PX))
     across = STEP_PX * np.arange(-count, count + 1, dtype=np.float64)
-    place = stretch.profiles_at(np.zeros(len(stretch)), across).astype(np.float32)
+    u, v = _places(stretch.point_px, stretch.normal_px, across)
     # bilinear and rounded to 1/32 px, which is enough for half a pixel
-    colour = np.asarray(cv2.remap(picture, place[..., 0], place[..., 1], cv2.INTER_LINEAR), dtype=np.float32)
+    colour = np.asarray(cv2.remap(picture, u, v, cv2.INTER_LINEAR), dtype=np.float32)
     wide = bell(GRADIENT_PX / STEP_PX)
     slope = np.gradient(wide) / STEP_PX
-    change = cv2.sepFilter2D(
-        colour, cv2.CV_32F, slope, bell(ALONG_PX / stretch.spacing_px), borderType=cv2.BORDER_REPLICATE
-    )
-    strength = np.sqrt((change**2).sum(axis=2))
-    before, here, after = strength[:, :-2], strength[:, 1:-1], strength[:, 2:]
-    edge = (here >= before) & (here > after) & (here > LEAST_GRADIENT)
-    edge &= across[1:-1] >= -INSIDE_SHARE * stretch.half_width_px[:, None]
-    curved = np.maximum(2 * here - before - after, 1e-12)
-    steepest = across[1:-1] + STEP_PX * ((after - before) / (2 * curved)).clip(-0.5, 0.5)
-    strongest = np.where(edge, here, LEAST_GRADIENT).max(axis=1, keepdims=True)
-    share = np.where(edge, here / strongest, 0.0).astype(np.float64)
-    return _Votes(across[1:-1], steepest, share)
+    along = bell(ALONG_PX / stretch.spacing_px)
+    change = np.asarray(cv2.sepFilter2D(colour, cv2.CV_32F, slope, along, borderType=cv2.BORDER_REPLICATE))
+    return _Votes(across[1:-1], *_steepest(change, across, -INSIDE_SHARE * stretch.half_width_px))
+
+
+@compiled(MATRIX, MATRIX, VECTOR)
+def _places(point_px: Floats, normal_px: Floats, across_px: Floats) -> tuple[Cloud, Cloud]:
+    """u and v (N, T) at distances (T,) along the normals (N, 2) from points (N, 2)."""
+    u = np.empty((len(point_px), len(across_px)), np.float32)
+    v = np.empty_like(u)
+    for n in range(len(point_px)):
+        for t in range(len(across_px)):
+            u[n, t] = point_px[n, 0] + across_px[t] * normal_px[n, 0]
+            v[n, t] = point_px[n, 1] + across_px[t] * normal_px[n, 1]
+    return u, v
+
+
+@compiled(COLOURS, VECTOR, VECTOR)
+def _steepest(change: Cloud, across_px: Floats, least_px: Floats) -> tuple[Floats, Floats]:
+    """Places and shares (N, T - 2), as votes have them, of a picture's slopes (N, T, 3) no farther in than (N,)."""
+    count, samples, _ = change.shape
+    place, share = np.empty((count, samples - 2)), np.zeros((count, samples - 2))
+    strength = np.empty(samples, np.float32)
+    for n in range(count):
+        for t in range(samples):
+            red, green, blue = change[n, t]
+            strength[t] = np.sqrt(red * red + green * green + blue * blue)
+        strongest = np.float32(LEAST_GRADIENT)
+        for t in range(1, samples - 1):
+            before, here, after = strength[t - 1], strength[t], strength[t + 1]
+            curved = max(here + here - before - after, np.float32(1e-12))
+            away = (after - before) / (curved + curved)
+            place[n, t - 1] = across_px[t] + STEP_PX * min(max(away, -0.5), 0.5)
+            if here >= before and here > after and here > LEAST_GRADIENT and across_px[t] >= least_px[n]:
+                share[n, t - 1] = here
+                strongest = max(strongest, here)
+        for t in range(samples - 2):
+            share[n, t] = np.float32(share[n, t]) / strongest
+    return place, share
 
 
 def _moves(stretch: Stretch, reach_px: float) -> tuple[Floats, Floats]:
     """What is tried of the first shape (A,), and of the two others (B, 2)."""
     if stretch.is_round:
         moves = np.arange(-reach_px, reach_px + ROUND_STEP_PX / 2, ROUND_STEP_PX)
-        return moves, np.stack(np.meshgrid(moves, moves, indexing="ij"), axis=-1).reshape(-1, 2)
+        return moves, _pairs(moves, moves)
     half_length = stretch.spacing_px * len(stretch) / 2
     count = int(np.ceil(np.tan(TILT_RAD) * half_length / STEP_PX))
     tilts, sags = STEP_PX * np.arange(-count, count + 1, dtype=np.float64), np.array([-SAG_PX, 0.0, SAG_PX])
-    bend = np.stack(np.meshgrid(tilts, sags, indexing="ij"), axis=-1).reshape(-1, 2)
-    return np.arange(-reach_px, reach_px + STEP_PX / 2, STEP_PX), bend
+    return np.arange(-reach_px, reach_px + STEP_PX / 2, STEP_PX), _pairs(tilts, sags)
 
 
-def _support(share: Floats, shift: Floats, places: Floats) -> Floats:
-    """Support (A, B) of lines at places (B, R), in steps, moved by shifts (A,); edges are where `share` (R, T) says."""
-    near = share.copy()
-    for step in range(1, round(2 * NEAR_PX / STEP_PX) + 1):
-        faded = share * np.exp(-0.5 * (step * STEP_PX / NEAR_PX) ** 2)
-        np.maximum(near[:, step:], faded[:, :-step], out=near[:, step:])
-        np.maximum(near[:, :-step], faded[:, step:], out=near[:, :-step])
-    near[:, [0, -1]] = 0.0
-    return _counted(near, shift, places)
+def _pairs(first: Floats, second: Floats) -> Floats:
+    return np.column_stack([np.repeat(first, len(second)), np.tile(second, len(first))])
 
 
 @compiled(MATRIX, VECTOR, MATRIX)
-def _counted(near: Floats, shift: Floats, places: Floats) -> Floats:
-    """Mean (A, B) over rows R of what `near` (R, T) holds at the places (B, R) nearest to shifted lines."""
-    last, rows = near.shape[1] - 1, near.shape[0]
-    mean = np.zeros((len(shift), len(places)))
-    for a in range(len(shift)):
-        for b in range(len(places)):
-            total = 0.0
-            for row in range(rows):
-                total += near[row, min(max(int(np.rint(shift[a] + places[b, row])), 0), last)]
-            mean[a, b] = total / rows
+def _support(share: Floats, shift: Floats, places: Floats) -> Floats:
+    """Support (A, B) of lines at places (B, R), in steps, moved by shifts (A,); edges are where `share` (R, T) says."""
+    rows, last = share.shape[0], share.shape[1] - 1
+    near = share.copy()
+    for step in range(1, round(2 * NEAR_PX / STEP_PX) + 1):
+        fade = np.exp(-0.5 * (step * STEP_PX / NEAR_PX) ** 2)
+        for row in range(rows):
+            for t in range(last + 1 - step):
+                near[row, t + step] = max(near[row, t + step], fade * share[row, t])
+                near[row, t] = max(near[row, t], fade * share[row, t + step])
+    near[:, 0], near[:, last] = 0.0, 0.0
+    mean = np.empty((len(shift), len(places)))
+    total = np.empty(len(shift))
+    for b in range(len(places)):
+        total[:] = 0.0
+        for row in range(rows):
+            for a in range(len(shift)):
+                total[a] += near[row, min(max(int(np.rint(shift[a] + places[b, row])), 0), last)]
+        mean[:, b] = total / rows
     return mean
 
 
-def _onto_edges(votes: _Votes, shapes: Floats, start_px: Floats) -> Floats:
+@compiled(MATRIX, VECTOR, VECTOR, FLOAT, FLOAT)
+def smooth_line(shapes: Floats, weight: Floats, place: Floats, held: float, unbent: float) -> Floats:
+    """The line (N,) of shapes (N, 3) nearest to places (N,), by weight (N,), and prior weights of no line, no bend."""
+    weighted = shapes.T * weight
+    normal = weighted @ shapes
+    for i in range(3):
+        normal[i, i] += held if i < 2 else unbent
+    return shapes @ np.linalg.solve(normal, weighted @ place)
+
+
+@compiled(VECTOR, MATRIX, MATRIX, MATRIX, VECTOR)
+def _onto_edges(across_px: Floats, place_px: Floats, share: Floats, shapes: Floats, start_px: Floats) -> Floats:
     """A line (N,) moved, by least squares, onto the edges beside it."""
-    line, rows = start_px, np.arange(len(start_px))
+    line, off, weight = start_px.copy(), np.empty(len(start_px)), np.empty(len(start_px))
     for near in (1.5, 1.0):
-        own = np.where(np.abs(votes.across_px - line[:, None]) < near, votes.share, 0.0)
-        best = own.argmax(axis=1)
-        weight = own[rows, best]
-        held = np.diag([1e-9, 1e-9, BEND_PRIOR * len(rows)])
-        normal = shapes.T @ (shapes * weight[:, None]) + held
-        line = line + shapes @ np.linalg.solve(normal, shapes.T @ (weight * (votes.place_px[rows, best] - line)))
+        for n in range(len(line)):
+            best = 0
+            weight[n] = 0.0
+            for t in range(len(across_px)):
+                if abs(across_px[t] - line[n]) < near and share[n, t] > weight[n]:
+                    best, weight[n] = t, share[n, t]
+            off[n] = place_px[n, best] - line[n]
+        line += smooth_line(shapes, weight, off, UNHELD, BEND_PRIOR * len(line))
     return line

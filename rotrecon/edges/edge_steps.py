@@ -10,7 +10,7 @@ from dataclasses import dataclass
 import numpy as np
 
 from rotrecon.arrays import Floats, freeze
-from rotrecon.edges.edge_lines import bell, filtered
+from rotrecon.edges.edge_lines import UNHELD, bell, filtered, smooth_line
 from rotrecon.edges.edge_model import CORRELATED_PX, Model, Profiles, model_of
 
 CLEAR_PX = 2.0
@@ -101,7 +101,7 @@ def _steps(profiles: Profiles, model: Model, blur_px: float) -> Steps:
     away, curvature = _vertex(before, here, after)
     place, weight = PLACES_PX[top] + apart * away, curvature / apart**2
     found = (here >= before) & (here >= after) & (weight > LARGEST_ERROR_PX**-2) & (stepped > 0.5)
-    line = _line(profiles.stretch.shapes(), place, weight * found)
+    line = _line(profiles.stretch.shapes, place, weight * found)
     found &= np.abs(place - line) < OFF_PX
     if not found.any():
         nothing = np.full(len(place), np.nan)
@@ -120,9 +120,7 @@ def _line(shapes: Floats, place: Floats, weight: Floats) -> Floats:
     line = np.zeros(len(place))
     for width in (1.0, OFF_PX, OFF_PX, OFF_PX):
         trusted = weight * (1 - ((place - line) / width) ** 2).clip(0, 1) ** 2
-        normal = shapes.T @ (shapes * trusted[:, None])
-        normal += np.diag([1e-9, 1e-9, BEND_PRIOR * normal[0, 0] + 1e-9])
-        line = shapes @ np.linalg.solve(normal, shapes.T @ (trusted * place))
+        line = smooth_line(shapes, trusted, place, UNHELD, BEND_PRIOR * float(trusted.sum()) + UNHELD)
     return line
 
 
