@@ -12,7 +12,7 @@ from rotrecon.circles import base_points
 from rotrecon.drawing import CrossSegments, Drawing, DrawingError, cut_sections
 from rotrecon.frame import Frame
 from rotrecon.outcome import FitFailure
-from rotrecon.rays.patch import without_speckle
+from rotrecon.rays.patch import clear_depth
 from rotrecon.reconstruction import Reconstruction
 from rotrecon.sections.by_sections import by_sections
 from rotrecon.sections.section_cuts import cut
@@ -35,7 +35,7 @@ def reconstruct(frame: Frame, drawing: Drawing, settings: Settings) -> Reconstru
     segments = cut_sections(drawing.area, drawing.stroke, (frame.camera.width, frame.camera.height))
     depth_m, usable = usable_depth(frame, segments)
     if settings.method == "robust":
-        depth_m = without_speckle(frame.depth_m).ravel()[segments.pixel]
+        depth_m = clear_depth(frame.depth_m, segments.pixel)
         usable &= np.isfinite(depth_m)
     segmentation = segment(depth_m, usable, segments.inside, settings)
     first = cut(*base_points(frame.points_m, segments.pixel, segmentation.kept), settings)

@@ -14,7 +14,7 @@ from rotrecon.rays.ball import Ball
 from rotrecon.rays.correlation import Likeness
 from rotrecon.rays.fitting import Outline
 from rotrecon.rays.lateral import Lateral
-from rotrecon.rays.patch import Patch, patch_of, without_speckle
+from rotrecon.rays.patch import Patch, clear_depth, patch_of
 from rotrecon.rays.ray_fit import RayFit, Sight
 from rotrecon.rays.starts import Ridge, ridge
 from rotrecon.rays.surfaces import turn_of
@@ -149,7 +149,7 @@ def ridge_seen(frame: Frame, drawing: Drawing) -> Ridge:
 
 def _segmented(frame: Frame, drawing: Drawing) -> tuple[CrossSegments, Bools, Cloud]:
     segments = cut_sections(drawing.area, drawing.stroke, (frame.camera.width, frame.camera.height))
-    clean = without_speckle(frame.depth_m).reshape(-1)[segments.pixel]
+    clean = clear_depth(frame.depth_m, segments.pixel)
     usable = segments.inside & np.isfinite(clean)
     return segments, segment(clean, usable, segments.inside, Settings()).kept, clean
 

@@ -1,6 +1,7 @@
 """Cylinders and cones that can be fitted."""
 
 from dataclasses import dataclass
+from functools import cached_property
 from typing import Literal
 
 import numpy as np
@@ -86,7 +87,7 @@ class Lateral:
     def _nearest_to(self, rays: Rays) -> tuple[Floats, Floats, Floats]:
         return nearest(np.ascontiguousarray(rays), self.turn, self._origin, self.radius_m, self.slope)
 
-    @property
+    @cached_property
     def _origin(self) -> Floats:
         """The camera (3,) in the surface's own coordinates."""
         return -self.turn @ self.center_m

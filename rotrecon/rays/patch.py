@@ -100,6 +100,19 @@ def patch_of(frame: Frame, area: AreaOfInterest, segments: CrossSegments, kept: 
     )
 
 
+def clear_depth(depth_m: Cloud, pixel: Indices) -> Cloud:
+    """Depth (S, W) without speckle of some pixels (S, W) of a flattened depth map (H, W); NaN where one is negative."""
+    height, width = depth_m.shape
+    row = pixel // width
+    column = pixel - row * width
+    there, reach = pixel >= 0, MEDIAN_PX // 2
+    top, bottom = max(int(row[there].min()) - reach, 0), min(int(row[there].max()) + reach + 1, height)
+    left, right = max(int(column[there].min()) - reach, 0), min(int(column[there].max()) + reach + 1, width)
+    clear = without_speckle(depth_m[top:bottom, left:right])
+    place = np.where(there, (row - top) * (right - left) + column - left, 0)
+    return np.where(there, clear.ravel()[place], np.float32(np.nan))
+
+
 def without_speckle(depth_m: Cloud) -> Cloud:
     """A depth map (h, w) through a median filter, unknown where it was or where most of the window is unknown."""
     known = np.isfinite(depth_m)

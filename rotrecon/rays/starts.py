@@ -6,6 +6,7 @@ import numpy as np
 
 from rotrecon.arrays import Bools, Floats, Indices, freeze
 from rotrecon.camera import PinholeCamera
+from rotrecon.compiled import MATRIX, VECTOR, compiled
 from rotrecon.drawing import CrossSegments
 from rotrecon.rays.ball import Ball
 from rotrecon.rays.lateral import Lateral
@@ -23,6 +24,8 @@ CONE_ANGLE_HELD = 0.95
 """Cosine between a start's axis and a direction that is held, below which the start is of no use."""
 SMALLEST_M = 1e-4
 """Radii and spreads below this are rounding."""
+UNKNOWN = 1e-12
+"""Of the strongest of several numbers' information, below which there is none."""
 
 
 @dataclass(frozen=True, eq=False)
@@ -120,17 +123,9 @@ def robust_line(points_m: Floats) -> tuple[Floats, Floats]:
     """Middle (3,) and unit direction (3,), in the order of the points (n, 3), of the line through most of them."""
     # a single one far behind would draw the line to itself, whatever its weight
     points_m = together(points_m)
-    weight = np.ones(len(points_m))
-    middle, offset, direction = points_m.mean(axis=0), points_m, np.array([0.0, 1.0, 0.0])
-    for _ in range(ROBUST_ROUNDS):
-        middle = np.average(points_m, axis=0, weights=weight)
-        offset = points_m - middle
-        _, vectors = np.linalg.eigh((offset * weight[:, None]).T @ offset)
-        direction = vectors[:, 2]
-        distance = np.linalg.norm(np.cross(offset, direction), axis=1)
-        weight = 1.0 / (1.0 + np.square(distance / max(float(np.median(distance)), SMALLEST_M)))
+    middle, direction = _line_through(points_m)
     order = np.arange(len(points_m)) - (len(points_m) - 1) / 2
-    return middle, direction if order @ (offset @ direction) >= 0 else -direction
+    return middle, direction if order @ (points_m @ direction) >= 0 else -direction
 
 
 def robust_circle(points: Floats) -> tuple[Floats, float] | None:
@@ -138,18 +133,85 @@ def robust_circle(points: Floats) -> tuple[Floats, float] | None:
 
     |p|^2 = 2 c p + (R^2 - |c|^2) is linear in the centre and in the bracket (Kasa 1976), reweighted by distance.
     """
-    terms = np.concatenate([2 * points, np.ones((len(points), 1))], axis=1)
-    squared = (points**2).sum(axis=1)
-    weight = np.ones(len(points))
-    center, radius = np.zeros(points.shape[1]), 0.0
+    center, radius = _circle_through(np.ascontiguousarray(points))
+    return (center, radius) if radius > SMALLEST_M else None
+
+
+@compiled(VECTOR)
+def _weights(distance: Floats) -> Floats:
+    """Of points at distances (N,) from what most of them are on."""
+    return 1.0 / (1.0 + (distance / max(np.median(distance), SMALLEST_M)) ** 2)
+
+
+@compiled(MATRIX)
+def _line_through(points: Floats) -> tuple[Floats, Floats]:
+    """See `robust_line`; the direction may be either."""
+    weight, distance = np.ones(len(points)), np.empty(len(points))
+    middle, direction = np.zeros(3), np.zeros(3)
     for _ in range(ROBUST_ROUNDS):
-        weighted = terms * weight[:, None]
-        solution: Floats = np.linalg.pinv(weighted.T @ terms, rcond=1e-12, hermitian=True) @ (weighted.T @ squared)
-        center = solution[:-1]
-        radius2 = float(solution[-1] + center @ center)
-        if not radius2 > SMALLEST_M**2:
-            return None
-        radius = float(np.sqrt(radius2))
-        distance = np.abs(np.linalg.norm(points - center, axis=1) - radius)
-        weight = 1.0 / (1.0 + np.square(distance / max(float(np.median(distance)), SMALLEST_M)))
+        middle = (weight @ points) / weight.sum()
+        scatter = np.zeros((3, 3))
+        for i in range(len(points)):
+            for j in range(3):
+                share = weight[i] * (points[i, j] - middle[j])
+                for k in range(3):
+                    scatter[j, k] += share * (points[i, k] - middle[k])
+        direction = np.linalg.eigh(scatter)[1][:, 2].copy()
+        for i in range(len(points)):
+            x, y, z = points[i, 0] - middle[0], points[i, 1] - middle[1], points[i, 2] - middle[2]
+            along_x, along_y, along_z = direction
+            aside = (y * along_z - z * along_y) ** 2 + (z * along_x - x * along_z) ** 2
+            distance[i] = np.sqrt(aside + (x * along_y - y * along_x) ** 2)
+        weight = _weights(distance)
+    return middle, direction
+
+
+@compiled(MATRIX, VECTOR, VECTOR)
+def _least_squares(terms: Floats, values: Floats, weight: Floats) -> Floats:
+    """The shortest of the best factors (k,) of terms (N, k) that add up to values (N,), by weight (N,)."""
+    normal, pull = np.zeros((terms.shape[1], terms.shape[1])), np.zeros(terms.shape[1])
+    for i in range(len(terms)):
+        for j in range(terms.shape[1]):
+            share = weight[i] * terms[i, j]
+            pull[j] += share * values[i]
+            for k in range(terms.shape[1]):
+                normal[j, k] += share * terms[i, k]
+    strength, along = np.linalg.eigh(normal)
+    found = np.zeros(len(pull))
+    for j in range(len(pull)):
+        if abs(strength[j]) > UNKNOWN * np.abs(strength).max():
+            found += (along[:, j] * pull).sum() / strength[j] * along[:, j]
+    return found
+
+
+@compiled(VECTOR)
+def _square(vector: Floats) -> float:
+    total = 0.0
+    for value in vector:
+        total += value * value
+    return total
+
+
+@compiled(MATRIX)
+def _circle_through(points: Floats) -> tuple[Floats, float]:
+    """See `robust_circle`; of a flat set the radius is no more than rounding."""
+    count, axes = points.shape
+    terms, squared = np.ones((count, axes + 1)), np.empty(count)
+    terms[:, :axes] = 2 * points
+    for i in range(count):
+        squared[i] = _square(points[i])
+    weight, distance = np.ones(count), np.empty(count)
+    center, radius = np.zeros(axes), 0.0
+    for _ in range(ROBUST_ROUNDS):
+        solution = _least_squares(terms, squared, weight)
+        center = solution[:axes]
+        radius = np.sqrt(max(solution[axes] + _square(center), 0.0))
+        if not radius > SMALLEST_M:
+            break
+        for i in range(count):
+            off = 0.0
+            for j in range(axes):
+                off += (points[i, j] - center[j]) ** 2
+            distance[i] = abs(np.sqrt(off) - radius)
+        weight = _weights(distance)
     return center, radius

@@ -15,7 +15,7 @@ from rotrecon.frame import Frame
 from rotrecon.rays.guard import Task as FitTask
 from rotrecon.rays.guard import settle
 from rotrecon.rays.hypotheses import Held, best_of, scene_of
-from rotrecon.rays.patch import patch_of, without_speckle
+from rotrecon.rays.patch import clear_depth, patch_of
 from rotrecon.rays.starts import cylinder_starts
 from rotrecon.reconstruct import reconstruct
 from rotrecon.settings import Method, Settings
@@ -52,7 +52,7 @@ def _surface_fit(example: Task) -> Callable[[], object]:
     segmented = finished(example, ROBUST)
     frame, segments, kept = segmented.frame, segmented.segments, segmented.segmentation.kept
     patch = patch_of(frame, segmented.drawing.area, segments, kept)
-    depth_m = without_speckle(frame.depth_m).ravel()[segments.pixel].astype(np.float64)
+    depth_m = clear_depth(frame.depth_m, segments.pixel).astype(np.float64)
     scene, held = scene_of(frame.camera, patch, segments, kept & np.isfinite(depth_m), depth_m), Held()
 
     def fit() -> object:
