@@ -8,6 +8,7 @@ import numpy as np
 
 from rotrecon.arrays import Floats, freeze
 from rotrecon.turned.profile import NORMAL_95, Profile
+from rotrecon.turned.runs import cheapest_runs, line_misfits
 
 PartKind = Literal["cylinder", "cone", "sphere"]
 KINDS: tuple[PartKind, ...] = ("cylinder", "cone", "sphere")
@@ -141,34 +142,13 @@ def _roughness(radius: Floats, own: Floats, lag: int) -> float:
 
 def _misfit(kind: PartKind, heights: _Heights) -> Floats:
     """(n + 1, n + 1) least sum of squared deviations of the heights from the first of a run to before its last."""
-    middle = heights.height.mean()
-    x, r = heights.height - middle, heights.radius
+    x, r = heights.height - heights.height.mean(), heights.radius
     if kind == "sphere":
         # r^2 + h^2 = 2 h h0 + (R^2 - h0^2) is linear in the centre's height and in the bracket
-        y, weight = r**2 + x**2, 1.0 / (4 * r**2 * heights.variance)
-    else:
-        y, weight = r - r.mean(), 1.0 / heights.variance
-    s0, sx, sy, sxx, sxy, syy = (_runs(weight * term) for term in (np.ones_like(x), x, y, x * x, x * y, y * y))
-    with np.errstate(divide="ignore", invalid="ignore"):
-        mixed, spread = sxy - sx * sy / s0, sxx - sx**2 / s0
-        level = syy - sy**2 / s0
-        # a slope that the axis' own error may have put there costs a cylinder as much as it is unlikely
-        lean = heights.lean**2 / (1.0 + heights.lean**2 * spread) if kind == "cylinder" else 1.0 / spread
-        misfit = level - lean * mixed**2
-        if kind == "sphere":
-            slope = mixed / spread
-            bracket = (sy - slope * sx) / s0
-            ends = np.stack([x[:, None] ** 2 * np.ones(len(x)), x[None, :] ** 2 * np.ones((len(x), 1))])
-            inside = np.stack([slope[:-1, 1:] * x[:, None], slope[:-1, 1:] * x[None, :]]) + bracket[:-1, 1:] - ends > 0
-            misfit[:-1, 1:] = np.where(inside.all(axis=0), misfit[:-1, 1:], np.inf)
-    number = np.arange(len(x) + 1)
-    return np.where(number[None, :] - number[:, None] >= FEWEST, np.maximum(misfit, 0.0), np.inf)
-
-
-def _runs(values: Floats) -> Floats:
-    """(n + 1, n + 1) sums of values (n,) from the first of a run to before its last."""
-    total = np.concatenate([[0.0], np.cumsum(values)])
-    return total[None, :] - total[:, None]
+        return line_misfits(x, r**2 + x**2, 1.0 / (4 * r**2 * heights.variance), np.inf, True, FEWEST)
+    # a slope that the axis' own error may have put there costs a cylinder as much as it is unlikely
+    lean = heights.lean if kind == "cylinder" else np.inf
+    return line_misfits(x, r - r.mean(), 1.0 / heights.variance, lean, False, FEWEST)
 
 
 def _cheapest(cost: Floats, price: float, skip: float) -> list[tuple[int, int]]:
@@ -177,22 +157,13 @@ def _cheapest(cost: Floats, price: float, skip: float) -> list[tuple[int, int]]:
     A few heights before a run, and after the last, may be left out for `skip` each.
     """
     count = len(cost)
-    later = [np.pad(cost[k:] + k * skip, ((0, k), (0, 0)), constant_values=np.inf) for k in range(MOST_SKIPPED + 1)]
-    skipped = np.argmin(later, axis=0)
-    cheaper = np.min(later, axis=0)
-    best, before = np.full(count, np.inf), np.zeros(count, dtype=np.int32)
-    best[0] = 0.0
-    for last in range(1, count):
-        total = best[:last] + cheaper[:last, last] + np.where(np.arange(last) > 0, price, 0.0)
-        before[last] = int(np.argmin(total))
-        best[last] = total[before[last]]
+    best, before, first = cheapest_runs(cost, price, skip, MOST_SKIPPED)
     ends = np.arange(max(count - 1 - MOST_SKIPPED, 0), count)
     at = int(ends[np.argmin(best[ends] + skip * (count - 1 - ends))])
     runs: list[tuple[int, int]] = []
     while at > 0 and np.isfinite(best[at]):
-        first = int(before[at])
-        runs.append((first + int(skipped[first, at]), at))
-        at = first
+        runs.append((int(first[at]), at))
+        at = int(before[at])
     return runs[::-1]
 
 
