@@ -33,7 +33,7 @@ FITTED = """
     rays.limbs rays.guard rays.hypotheses rays.robust
 """.split()
 TURNED = """
-    rays.lines turned.turned extent turned.looks turned.height_radii turned.profile turned.runs turned.parts
+    rays.lines turned.turned extent turned.look_rays turned.looks turned.height_radii turned.profile turned.runs turned.parts
     turned.smoothness turned.turned_start turned.turned_fit
 """.split()
 PHOTOMETRY = """

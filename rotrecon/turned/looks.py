@@ -11,6 +11,8 @@ from rotrecon.rays.lateral import Lateral
 from rotrecon.rays.lines import Lines
 from rotrecon.rays.patch import Patch
 from rotrecon.rays.ray_fit import spread
+from rotrecon.rays.traces import GRAZING_PX
+from rotrecon.turned.look_rays import grouped_medians, met_cones
 from rotrecon.turned.turned import Turned, radius_at, turned_from
 
 INNER = 0.7
@@ -68,11 +70,16 @@ class Looks:
         change = change_m[self.place]
         unknown = np.isnan(change)
         radius = np.maximum(self.radius + np.where(unknown, 0.0, change), SMALLEST_M)
-        depth, root, _ = self.surface.meet_cone(self.lines, self.height, radius, self.slope)
-        square, _, _ = self.lines.quadratic(self.height, radius, self.slope)
-        grazing = root**2 < (1 - self.guard**2) * np.abs(square) * radius**2
-        scale = -self.surface.side / (root * self.noise.sigma_m(depth))
-        columns = _columns(self.lines, depth, self.height, radius, self.slope) * scale
+        lines, surface = self.lines, self.surface
+        columns, depth, root, grazing = met_cones(
+            lines.origin,
+            lines.turned,
+            np.stack([lines.square, lines.mixed, self.height, radius, self.slope]),
+            surface.side,
+            2 * GRAZING_PX / surface.focal_px,
+            1 - self.guard**2,
+        )
+        columns *= -surface.side / (root * self.noise.sigma_m(depth))
         return np.where(grazing | unknown, FAR, self.steps - self.noise.steps(depth)), columns
 
 
@@ -166,15 +173,7 @@ def grazes_at(surface: Turned, outlines: Outlines, heights_m: Floats) -> Grazes 
 def medians(values: Floats, place: Indices, count: int, fewest: int) -> Floats:
     """(count,) medians of the known of values (N,) by their place (N,); NaN where there are fewer than so many."""
     known = np.isfinite(values)
-    order = np.lexsort((values[known], place[known]))
-    ordered = values[known][order]
-    number = np.bincount(place[known], minlength=count)
-    first = np.cumsum(number) - number
-    if len(ordered) == 0:
-        return np.full(count, np.nan)
-    low = np.minimum(first + np.maximum(number - 1, 0) // 2, len(ordered) - 1)
-    high = np.minimum(first + number // 2, len(ordered) - 1)
-    return np.where(number >= fewest, (ordered[low] + ordered[high]) / 2, np.nan)
+    return grouped_medians(values[known], place[known], count, fewest)
 
 
 def _beside(surface: Turned, points_m: Floats) -> tuple[Floats, Floats, Floats]:
