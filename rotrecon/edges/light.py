@@ -99,9 +99,7 @@ def _weights(part: float) -> tuple[float, float, float, float]:
 
 
 @compiled(CUBE, MATRIX, MATRIX, VECTOR, VECTOR)
-def _across(
-    coefficients: Floats, point_px: Floats, normal_px: Floats, offset_px: Floats, across_px: Floats
-) -> Floats:
+def _across(coefficients: Floats, point_px: Floats, normal_px: Floats, offset_px: Floats, across_px: Floats) -> Floats:
     """See `LightSpline.across`; beyond the border its coefficients go on."""
     height, width, _ = coefficients.shape
     light = np.zeros((3, len(across_px), len(offset_px)))

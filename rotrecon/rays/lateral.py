@@ -7,7 +7,7 @@ from typing import Literal
 import numpy as np
 
 from rotrecon.arrays import Bools, Floats, freeze
-from rotrecon.rays.lateral_rays import crossings, gradient, nearest, tilted
+from rotrecon.rays.lateral_rays import asides, grazed, met, passed, tilted, traced
 from rotrecon.rays.traces import GRAZING_PX, Range, Rays, Tangency, Trace, limited
 
 
@@ -55,48 +55,36 @@ class Lateral:
 
     def meet(self, rays: Rays) -> tuple[Floats, Bools]:
         """Depth (N,) and hits (N,) of rays, as `trace` has them."""
-        _, depth, _, hit = self._crossings(rays)
-        return depth, hit
+        return met(np.ascontiguousarray(rays), *self._place, self.side, self._grazing)
 
     def trace(self, rays: Rays) -> Trace:
         """Where rays meet it; parameters: shift across, shift toward the camera, turn by each, radius, slope."""
-        points, depth, root, hit = self._crossings(rays)
-        return Trace(self._gradient(points), -self.side / root, depth, hit)
-
-    def _crossings(self, rays: Rays) -> tuple[Floats, Floats, Floats, Bools]:
-        rays, grazing = np.ascontiguousarray(rays), 2 * GRAZING_PX / self.focal_px
-        return crossings(rays, self.turn, self._origin, self.radius_m, self.slope, self.side, grazing)
+        return Trace(*traced(np.ascontiguousarray(rays), *self._place, self.side, self._grazing, self._parameters))
 
     def gap(self, rays: Rays) -> tuple[Floats, Floats]:
         """How far rays pass outside it, and the depth of their nearest points, both (N,); as `tangency` has them."""
-        points, squared, depth = self._nearest_to(rays)
-        radius = self._radius_at(points[2])
-        return (squared - radius * radius) / (2 * radius), depth
+        return passed(np.ascontiguousarray(rays), *self._place)
 
     def tangency(self, rays: Rays) -> Tangency:
         """How far rays pass outside it."""
-        points, squared, depth = self._nearest_to(rays)
-        radius = self._radius_at(points[2])
-        return Tangency(self._gradient(points), 1.0 / radius, (squared - radius * radius) / (2 * radius), depth)
+        return Tangency(*grazed(np.ascontiguousarray(rays), *self._place, self._parameters))
 
     def off_middle(self, rays: Rays) -> Floats:
         """How far beside the axis rays (3, N) pass, over the radius there: 1 at the outline."""
-        points, squared, _ = self._nearest_to(rays)
-        return np.sqrt(squared) / np.maximum(self._radius_at(points[2]), 1e-9)
-
-    def _nearest_to(self, rays: Rays) -> tuple[Floats, Floats, Floats]:
-        return nearest(np.ascontiguousarray(rays), self.turn, self._origin, self.radius_m, self.slope)
+        return asides(np.ascontiguousarray(rays), *self._place)
 
     @cached_property
-    def _origin(self) -> Floats:
-        """The camera (3,) in the surface's own coordinates."""
-        return -self.turn @ self.center_m
+    def _place(self) -> tuple[Floats, Floats, float, float]:
+        """Its turn, the camera (3,) in its own coordinates, its radius and its slope."""
+        return self.turn, -self.turn @ self.center_m, self.radius_m, self.slope
 
-    def _radius_at(self, h: Floats) -> Floats:
-        return self.radius_m + self.slope * h
+    @property
+    def _grazing(self) -> float:
+        return 2 * GRAZING_PX / self.focal_px
 
-    def _gradient(self, points: Floats) -> Floats:
-        return gradient(points, self.radius_m, self.slope, self.tapers)
+    @property
+    def _parameters(self) -> int:
+        return 6 if self.tapers else 5
 
     def heights(self, points_m: Floats) -> Floats:
         """Heights (N,) along the axis, from the centre, of points (N, 3)."""
