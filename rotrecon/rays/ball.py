@@ -6,7 +6,7 @@ from typing import Literal
 import numpy as np
 
 from rotrecon.arrays import Bools, Floats, freeze
-from rotrecon.rays.ball_rays import crossings, nearest
+from rotrecon.rays.ball_rays import grazed, met, traced
 from rotrecon.rays.traces import GRAZING_PX, Range, Rays, Tangency, Trace, limited
 
 
@@ -41,36 +41,32 @@ class Ball:
 
     def trace(self, rays: Rays) -> Trace:
         """Where rays meet it; parameters: the centre's three coordinates and the radius."""
-        points, depth, root, hit = self._crossings(rays)
-        return Trace(self._gradient(points), -self.side / root, depth, hit)
+        return Trace(*traced(np.ascontiguousarray(rays), self.center_m, self.radius_m, self.side, self._grazing))
 
     def meet(self, rays: Rays) -> tuple[Floats, Bools]:
         """See `Lateral.meet`."""
-        _, depth, _, hit = self._crossings(rays)
-        return depth, hit
-
-    def _crossings(self, rays: Rays) -> tuple[Floats, Floats, Floats, Bools]:
-        rays, grazing = np.ascontiguousarray(rays), 2 * GRAZING_PX / self.focal_px
-        return crossings(rays, self.center_m, self.radius_m, self.side, grazing)
+        return met(np.ascontiguousarray(rays), self.center_m, self.radius_m, self.side, self._grazing)
 
     def gap(self, rays: Rays) -> tuple[Floats, Floats]:
         """See `Lateral.gap`."""
-        _, squared, depth = nearest(np.ascontiguousarray(rays), self.center_m)
-        return (squared - self.radius_m**2) / (2 * self.radius_m), depth
+        return self._grazed(rays)[1:]
 
     def tangency(self, rays: Rays) -> Tangency:
         """How far rays pass outside it."""
-        points, squared, depth = nearest(np.ascontiguousarray(rays), self.center_m)
-        gap = (squared - self.radius_m**2) / (2 * self.radius_m)
-        return Tangency(self._gradient(points), np.array(1.0 / self.radius_m), gap, depth)
+        columns, gap, depth = self._grazed(rays)
+        return Tangency(columns, np.array(1.0 / self.radius_m), gap, depth)
 
     def off_middle(self, rays: Rays) -> Floats:
         """How far beside the centre rays (3, N) pass, over the radius: 1 at the outline."""
-        return np.sqrt(nearest(np.ascontiguousarray(rays), self.center_m)[1]) / self.radius_m
+        x, y, z, _ = self._grazed(rays)[0]
+        return np.sqrt(x * x + y * y + z * z) / self.radius_m
 
-    def _gradient(self, points: Floats) -> Floats:
-        """Derivatives (4, N) of half the square of the distance from the centre, less the radius', at points (3, N)."""
-        return np.concatenate([-points, np.full((1, points.shape[1]), -self.radius_m)])
+    @property
+    def _grazing(self) -> float:
+        return 2 * GRAZING_PX / self.focal_px
+
+    def _grazed(self, rays: Rays) -> tuple[Floats, Floats, Floats]:
+        return grazed(np.ascontiguousarray(rays), self.center_m, self.radius_m)
 
     def stepped(self, step: Floats) -> "Ball":
         """The surface after a step (4,) of its parameters."""
