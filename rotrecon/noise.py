@@ -5,6 +5,7 @@ from dataclasses import dataclass
 import numpy as np
 
 from rotrecon.arrays import Cloud, Floats
+from rotrecon.compiled import COUNT, MATRIX, compiled
 from rotrecon.frame import DepthCameraNoise, DepthNoise, StereoNoise
 
 LAGS_PX = np.array([1, 2, 3, 4, 6, 8])
@@ -101,11 +102,27 @@ def _alike(lag_px: Floats, correlation_px: float) -> Floats:
 
 def _second_difference_variance(values: Floats, lag: int) -> float:
     """Of quiet places, both ways; NaN when there are too few."""
-    rows = values[2 * lag :] - 2 * values[lag:-lag] + values[: -2 * lag]
-    columns = values[:, 2 * lag :] - 2 * values[:, lag:-lag] + values[:, : -2 * lag]
-    magnitude = np.abs(np.concatenate([rows.ravel(), columns.ravel()]))
-    magnitude = magnitude[np.isfinite(magnitude)]
+    magnitude = _second_differences(np.ascontiguousarray(values), lag)
     if len(magnitude) < FEWEST_DIFFERENCES:
         return np.nan
-    quiet = np.partition(magnitude, int(QUIET_QUANTILE * len(magnitude)))[int(QUIET_QUANTILE * len(magnitude))]
-    return float(quiet / QUIET_SIGMA) ** 2
+    place = int(QUIET_QUANTILE * len(magnitude))
+    return float(np.partition(magnitude, place)[place] / QUIET_SIGMA) ** 2
+
+
+@compiled(MATRIX, COUNT)
+def _second_differences(values: Floats, lag: int) -> Floats:
+    """Magnitudes (N,) of the known second differences over a lag, down and across."""
+    height, width = values.shape
+    found, count = np.empty(2 * height * width), 0
+    for row in range(height):
+        for column in range(width):
+            here = values[row, column]
+            if lag <= row < height - lag:
+                change = abs(values[row + lag, column] - 2 * here + values[row - lag, column])
+                found[count] = change
+                count += np.isfinite(change)
+            if lag <= column < width - lag:
+                change = abs(values[row, column + lag] - 2 * here + values[row, column - lag])
+                found[count] = change
+                count += np.isfinite(change)
+    return found[:count]

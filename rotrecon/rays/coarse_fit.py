@@ -82,5 +82,6 @@ def coarse_pixels(patch: Patch, segments: CrossSegments, kept: Bools) -> Indices
     inner = kept & (rank > LIMB_SHARE * count) & (rank <= (1 - LIMB_SHARE) * count)
     width = patch.camera.width
     place = np.stack(np.divmod(segments.pixel[inner], width)[::-1], axis=-1)
-    pixels = patch.pixel_of(place.astype(np.float64))
-    return spread(np.unique(pixels[np.isfinite(patch.depth_m[pixels])]), COARSE_PIXELS)
+    usable = np.zeros(len(patch.depth_m), dtype=np.bool_)
+    usable[patch.pixel_of(place.astype(np.float64))] = True
+    return spread(np.flatnonzero(usable & np.isfinite(patch.depth_m)).astype(np.int32), COARSE_PIXELS)

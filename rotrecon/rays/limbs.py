@@ -162,7 +162,7 @@ class SeenOutline:
 def seen_outline(surface: Surface, patch: Patch, segments: CrossSegments, length_m: float) -> SeenOutline:
     """The edges in the picture near the outline of a surface, beside a stroke along `length_m` of it."""
     nothing = SeenOutline(None, 0)
-    if surface.side > 0 or np.ptp(patch.picture()) == 0:
+    if surface.side > 0 or patch.is_plain:
         return nothing
     # what is beside the stroke is not at its heights where one looks along the axis
     heights_m = np.linspace(-OUTLINE_REACH, OUTLINE_REACH, OUTLINE_SECTIONS) * length_m

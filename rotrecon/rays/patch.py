@@ -1,6 +1,7 @@
 """The rectangle of a frame that a drawing concerns, pixel by pixel, as the robust method sees it."""
 
 from dataclasses import dataclass
+from functools import cached_property
 
 import cv2
 import numpy as np
@@ -55,6 +56,11 @@ class Patch:
         """The rectangle (h, w, 3) of the image."""
         left, top = self.corner_px.astype(np.int32)
         return self.image[top : top + self.shape[0], left : left + self.shape[1]]
+
+    @cached_property
+    def is_plain(self) -> bool:
+        """Whether its picture is of one brightness, as a frame's without a picture is."""
+        return bool(np.ptp(self.picture()) == 0)
 
     def frame_pixels(self, pixels: Indices) -> Indices:
         """Index (n,) into the flattened frame of pixels (n,) of the patch."""

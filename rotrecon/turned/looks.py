@@ -129,7 +129,7 @@ def looks_at(surface: Lateral, patch: Patch, heights_m: Floats, guard: float, mo
     pixels = every if most is None else spread(every, SURPLUS * most)
     share = len(pixels) / max(len(every), 1)
     depth_m = patch.depth_m[pixels]
-    x, y, height = _beside(turned, patch.rays[:, pixels] * depth_m)
+    x, y, height = _beside(turned, patch.rays.take(pixels, axis=1) * depth_m)
     radius, slope = turned.curve(height)
     off = np.hypot(x, y) - radius
     close = np.abs(off) < CLOSE * radius + CLOSE_SIGMA * patch.noise.sigma_m(depth_m)
@@ -141,7 +141,7 @@ def looks_at(surface: Lateral, patch: Patch, heights_m: Floats, guard: float, mo
     return Looks(
         surface=turned,
         guard=min(guard, GUARD),
-        lines=Lines.of(turned, patch.rays[:, pixels[chosen]]),
+        lines=Lines.of(turned, patch.rays.take(pixels[chosen], axis=1)),
         pixels=pixels[chosen],
         share=share,
         steps=patch.noise.steps(depth_m[chosen]),
