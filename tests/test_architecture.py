@@ -29,12 +29,13 @@ FITTED = """
     rays.traces rays.lateral_rays rays.lateral rays.ball_rays rays.ball rays.surfaces rays.patch rays.correlation
     rays.losses rays.fitting rays.whitening rays.covariance rays.ray_fit
     rays.coarse_fit rays.starts
-    edges.light edges.edge_lines edges.shading edges.step_likelihood edges.edge_model edges.edge_steps edges.edges
+    edges.light edges.line_loops edges.edge_lines edges.shading edges.step_likelihood edges.edge_model
+    edges.edge_steps edges.edges
     rays.limbs rays.guard rays.hypotheses rays.robust
 """.split()
 TURNED = """
-    rays.lines turned.turned extent turned.look_rays turned.looks turned.height_radii turned.profile turned.runs turned.parts
-    turned.smoothness turned.turned_start turned.turned_fit
+    rays.lines turned.turned extent turned.look_rays turned.looks turned.height_radii turned.profile
+    turned.runs turned.parts turned.smoothness turned.turned_start turned.turned_fit
 """.split()
 PHOTOMETRY = """
     photometry.splines photometry.carrying photometry.agreement photometry.visible photometry.matches
@@ -61,7 +62,7 @@ STAGES = set(
 TYPES = set(
     """
     arrays compiled camera primitives contact settings frame drawing outcome tool_table
-    rays.traces rays.lateral_rays rays.lateral rays.ball_rays rays.ball rays.surfaces rays.patch
+    rays.traces rays.lateral_rays rays.lateral rays.ball_rays rays.ball rays.surfaces rays.patch edges.line_loops
 """.split()
 )
 

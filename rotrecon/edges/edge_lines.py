@@ -8,19 +8,15 @@ import cv2
 import numpy as np
 from numpy.typing import NDArray
 
-from rotrecon.arrays import Cloud, Floats, freeze
-from rotrecon.compiled import FLOAT, MATRIX, NUMBA, VECTOR, compiled
+from rotrecon.arrays import Floats, freeze
+from rotrecon.edges.line_loops import STEP_PX, onto_edges, samples_at, steepest, support_of
 
-STEP_PX = 0.5
-"""Distance of the samples along a normal, and of the lines tried; each is then moved onto its own edges."""
 BEYOND_PX = 3.0
 """How far profiles go on beyond the reach, so that lines may leave it at their ends."""
 ALONG_PX = 4.0
 """Standard deviation of the average along the outline: it takes texture away, and an outline bends little in it."""
 GRADIENT_PX = 1.0
 """Standard deviation across: an edge in a picture is about that wide, noise and the texture's finest part are not."""
-LEAST_GRADIENT = 1.0
-"""Grey levels a pixel: the noise of a plain surface, averaged like this, stays below."""
 INSIDE_SHARE = 0.8
 """Of the half width, how far inward edges are looked for: beyond are those of the other side."""
 TILT_RAD = float(np.deg2rad(2.5))
@@ -31,8 +27,6 @@ ROUND_RAD = np.pi / 2
 """An outline that turns by more is moved and blown up, not tilted and bent."""
 ROUND_STEP_PX = 0.75
 """Of the moves tried of a round outline."""
-NEAR_PX = 0.6
-"""Standard deviation of an edge from a line it counts for: half a step of the lines, and the spread of the edges."""
 SAME_LINE_PX = 1.75
 """Edges nearer to a line than this are its own: blur does not let two lines be told apart in less."""
 ROWS = 64
@@ -41,11 +35,6 @@ OUTER_SHARE = 0.8
 """Of the best support, what the outermost line needs: highlights, shades and prints run along the inside of a limb."""
 ONE = np.ones(1)
 """Weights that leave values as they are."""
-BEND_PRIOR = 0.02
-"""Weight of no bend against all votes, where lines are moved onto edges."""
-UNHELD = 1e-9
-"""Weight of no shift and no tilt, so that a line without edges is one still."""
-COLOURS = NUMBA.types.Array(NUMBA.float32, 3, "C", readonly=True)
 
 
 @dataclass(frozen=True, eq=False)
@@ -128,6 +117,10 @@ def bell(sigma: float) -> Floats:
     return weights / weights.sum()
 
 
+SLOPE = np.gradient(bell(GRADIENT_PX / STEP_PX)) / STEP_PX
+"""Weights of a Gaussian derivative."""
+
+
 def filtered(values: NDArray[np.floating[Any]], down: Floats, right: Floats = ONE) -> Floats:
     """Values (N, T) or (N, T, 3) correlated with weights along both; at the borders the outermost go on."""
     result = cv2.sepFilter2D(values, cv2.CV_64F, right, down, borderType=cv2.BORDER_REPLICATE)
@@ -140,64 +133,27 @@ def find_line(picture: NDArray[np.float32], stretch: Stretch, reach_px: float) -
     shift, bend = _moves(stretch, reach_px)
     rows = np.linspace(0, len(stretch) - 1, min(len(stretch), ROWS)).round().astype(np.intp)
     places = (bend @ shapes[rows, 1:].T - votes.across_px[0]) / STEP_PX
-    support = _support(votes.share[rows], shift / STEP_PX, places)
+    support = support_of(votes.share[rows], shift / STEP_PX, places)
     best = support.max(axis=1)
     around = np.concatenate([[0.0], best, [0.0]])
     tops = (best >= OUTER_SHARE * best.max()) & (best >= around[:-2]) & (best >= around[2:])
     chosen = int(np.flatnonzero(tops)[-1])
     start = shapes @ np.array([shift[chosen], *bend[support[chosen].argmax()]])
-    offset = _onto_edges(votes.across_px, votes.place_px, votes.share, shapes, start)
+    offset = onto_edges(votes.across_px, votes.place_px, votes.share, shapes, start)
     others = np.where(np.abs(votes.across_px - offset[rows, None]) < SAME_LINE_PX, 0.0, votes.share[rows])
-    return Line(offset, float(best[chosen]), float(_support(others, shift / STEP_PX, places).max()))
+    return Line(offset, float(best[chosen]), float(support_of(others, shift / STEP_PX, places).max()))
 
 
 def _votes(picture: NDArray[np.float32], stretch: Stretch, reach_px: float) -> _Votes:
     count = int(np.ceil((reach_px + BEYOND_PX) / STEP_PX))
     across = STEP_PX * np.arange(-count, count + 1, dtype=np.float64)
-    u, v = _places(stretch.point_px, stretch.normal_px, across)
+    u, v = samples_at(stretch.point_px, stretch.normal_px, across)
     # bilinear and rounded to 1/32 px, which is enough for half a pixel
     colour = np.asarray(cv2.remap(picture, u, v, cv2.INTER_LINEAR), dtype=np.float32)
-    wide = bell(GRADIENT_PX / STEP_PX)
-    slope = np.gradient(wide) / STEP_PX
     along = bell(ALONG_PX / stretch.spacing_px)
-    change = np.asarray(cv2.sepFilter2D(colour, cv2.CV_32F, slope, along, borderType=cv2.BORDER_REPLICATE))
-    return _Votes(across[1:-1], *_steepest(change, across, -INSIDE_SHARE * stretch.half_width_px))
-
-
-@compiled(MATRIX, MATRIX, VECTOR)
-def _places(point_px: Floats, normal_px: Floats, across_px: Floats) -> tuple[Cloud, Cloud]:
-    """u and v (N, T) at distances (T,) along the normals (N, 2) from points (N, 2)."""
-    u = np.empty((len(point_px), len(across_px)), np.float32)
-    v = np.empty_like(u)
-    for n in range(len(point_px)):
-        for t in range(len(across_px)):
-            u[n, t] = point_px[n, 0] + across_px[t] * normal_px[n, 0]
-            v[n, t] = point_px[n, 1] + across_px[t] * normal_px[n, 1]
-    return u, v
-
-
-@compiled(COLOURS, VECTOR, VECTOR)
-def _steepest(change: Cloud, across_px: Floats, least_px: Floats) -> tuple[Floats, Floats]:
-    """Places and shares (N, T - 2), as votes have them, of a picture's slopes (N, T, 3) no farther in than (N,)."""
-    count, samples, _ = change.shape
-    place, share = np.empty((count, samples - 2)), np.zeros((count, samples - 2))
-    strength = np.empty(samples, np.float32)
-    for n in range(count):
-        for t in range(samples):
-            red, green, blue = change[n, t]
-            strength[t] = np.sqrt(red * red + green * green + blue * blue)
-        strongest = np.float32(LEAST_GRADIENT)
-        for t in range(1, samples - 1):
-            before, here, after = strength[t - 1], strength[t], strength[t + 1]
-            curved = max(here + here - before - after, np.float32(1e-12))
-            away = (after - before) / (curved + curved)
-            place[n, t - 1] = across_px[t] + STEP_PX * min(max(away, -0.5), 0.5)
-            if here >= before and here > after and here > LEAST_GRADIENT and across_px[t] >= least_px[n]:
-                share[n, t - 1] = here
-                strongest = max(strongest, here)
-        for t in range(samples - 2):
-            share[n, t] = np.float32(share[n, t]) / strongest
-    return place, share
+    change = cv2.sepFilter2D(colour, cv2.CV_32F, SLOPE, along, borderType=cv2.BORDER_REPLICATE)
+    change = np.asarray(change, dtype=np.float32)
+    return _Votes(across[1:-1], *steepest(change, across, -INSIDE_SHARE * stretch.half_width_px))
 
 
 def _moves(stretch: Stretch, reach_px: float) -> tuple[Floats, Floats]:
@@ -213,52 +169,3 @@ def _moves(stretch: Stretch, reach_px: float) -> tuple[Floats, Floats]:
 
 def _pairs(first: Floats, second: Floats) -> Floats:
     return np.column_stack([np.repeat(first, len(second)), np.tile(second, len(first))])
-
-
-@compiled(MATRIX, VECTOR, MATRIX)
-def _support(share: Floats, shift: Floats, places: Floats) -> Floats:
-    """Support (A, B) of lines at places (B, R), in steps, moved by shifts (A,); edges are where `share` (R, T) says."""
-    rows, last = share.shape[0], share.shape[1] - 1
-    near = share.copy()
-    for step in range(1, round(2 * NEAR_PX / STEP_PX) + 1):
-        fade = np.exp(-0.5 * (step * STEP_PX / NEAR_PX) ** 2)
-        for row in range(rows):
-            for t in range(last + 1 - step):
-                near[row, t + step] = max(near[row, t + step], fade * share[row, t])
-                near[row, t] = max(near[row, t], fade * share[row, t + step])
-    near[:, 0], near[:, last] = 0.0, 0.0
-    mean = np.empty((len(shift), len(places)))
-    total = np.empty(len(shift))
-    for b in range(len(places)):
-        total[:] = 0.0
-        for row in range(rows):
-            for a in range(len(shift)):
-                total[a] += near[row, min(max(int(np.rint(shift[a] + places[b, row])), 0), last)]
-        mean[:, b] = total / rows
-    return mean
-
-
-@compiled(MATRIX, VECTOR, VECTOR, FLOAT, FLOAT)
-def smooth_line(shapes: Floats, weight: Floats, place: Floats, held: float, unbent: float) -> Floats:
-    """The line (N,) of shapes (N, 3) nearest to places (N,), by weight (N,), and prior weights of no line, no bend."""
-    weighted = shapes.T * weight
-    normal = weighted @ shapes
-    for i in range(3):
-        normal[i, i] += held if i < 2 else unbent
-    return shapes @ np.linalg.solve(normal, weighted @ place)
-
-
-@compiled(VECTOR, MATRIX, MATRIX, MATRIX, VECTOR)
-def _onto_edges(across_px: Floats, place_px: Floats, share: Floats, shapes: Floats, start_px: Floats) -> Floats:
-    """A line (N,) moved, by least squares, onto the edges beside it."""
-    line, off, weight = start_px.copy(), np.empty(len(start_px)), np.empty(len(start_px))
-    for near in (1.5, 1.0):
-        for n in range(len(line)):
-            best = 0
-            weight[n] = 0.0
-            for t in range(len(across_px)):
-                if abs(across_px[t] - line[n]) < near and share[n, t] > weight[n]:
-                    best, weight[n] = t, share[n, t]
-            off[n] = place_px[n, best] - line[n]
-        line += smooth_line(shapes, weight, off, UNHELD, BEND_PRIOR * len(line))
-    return line

@@ -10,8 +10,9 @@ from dataclasses import dataclass
 import numpy as np
 
 from rotrecon.arrays import Floats, freeze
-from rotrecon.edges.edge_lines import UNHELD, bell, filtered, smooth_line
+from rotrecon.edges.edge_lines import bell, filtered
 from rotrecon.edges.edge_model import CORRELATED_PX, Model, Profiles, model_of
+from rotrecon.edges.line_loops import UNHELD, smooth_line
 
 CLEAR_PX = 2.0
 """Distance from the edge where a colour is one side's alone, in pictures that are not blurred."""

@@ -205,7 +205,7 @@ def _circle_through(points: Floats) -> tuple[Floats, float]:
     for _ in range(ROBUST_ROUNDS):
         solution = _least_squares(terms, squared, weight)
         center = solution[:axes]
-        radius = np.sqrt(max(solution[axes] + _square(center), 0.0))
+        radius = float(np.sqrt(max(solution[axes] + _square(center), 0.0)))
         if not radius > SMALLEST_M:
             break
         for i in range(count):
