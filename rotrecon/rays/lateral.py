@@ -55,26 +55,26 @@ class Lateral:
 
     def meet(self, rays: Rays) -> tuple[Floats, Bools]:
         """Depth (N,) and hits (N,) of rays, as `trace` has them."""
-        return met(np.ascontiguousarray(rays), *self._place, self.side, self._grazing)
+        return met(np.ascontiguousarray(rays), *self._pose, self.side, self._grazing)
 
     def trace(self, rays: Rays) -> Trace:
         """Where rays meet it; parameters: shift across, shift toward the camera, turn by each, radius, slope."""
-        return Trace(*traced(np.ascontiguousarray(rays), *self._place, self.side, self._grazing, self._parameters))
+        return Trace(*traced(np.ascontiguousarray(rays), *self._pose, self.side, self._grazing, self._parameters))
 
     def gap(self, rays: Rays) -> tuple[Floats, Floats]:
         """How far rays pass outside it, and the depth of their nearest points, both (N,); as `tangency` has them."""
-        return passed(np.ascontiguousarray(rays), *self._place)
+        return passed(np.ascontiguousarray(rays), *self._pose)
 
     def tangency(self, rays: Rays) -> Tangency:
         """How far rays pass outside it."""
-        return Tangency(*grazed(np.ascontiguousarray(rays), *self._place, self._parameters))
+        return Tangency(*grazed(np.ascontiguousarray(rays), *self._pose, self._parameters))
 
     def off_middle(self, rays: Rays) -> Floats:
         """How far beside the axis rays (3, N) pass, over the radius there: 1 at the outline."""
-        return asides(np.ascontiguousarray(rays), *self._place)
+        return asides(np.ascontiguousarray(rays), *self._pose)
 
     @cached_property
-    def _place(self) -> tuple[Floats, Floats, float, float]:
+    def _pose(self) -> tuple[Floats, Floats, float, float]:
         """Its turn, the camera (3,) in its own coordinates, its radius and its slope."""
         return self.turn, -self.turn @ self.center_m, self.radius_m, self.slope
 
