@@ -45,7 +45,7 @@ class RayNoise:
         Of a stereo camera it is negative disparity over its sigma, in which errors are the same at every depth.
         """
         if self.floor_m == 0.0:
-            return -1.0 / (self.growth_per_m * depth_m)
+            return -1.0 / self.growth_per_m / depth_m
         if self.growth_per_m == 0.0:
             return depth_m / self.floor_m
         root = np.sqrt(self.growth_per_m / self.floor_m)
