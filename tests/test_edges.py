@@ -4,11 +4,12 @@ import numpy as np
 import pytest
 from hypothesis import given, settings
 from hypothesis import strategies as st
+from scipy import ndimage
 
 from rotrecon.camera import PinholeCamera
 from rotrecon.edges.edge_steps import CLEAR_PX
 from rotrecon.edges.edges import LEAST_HALF_WIDTH_PX, Edges, find_edges
-from rotrecon.edges.light import LINEAR_LIGHT
+from rotrecon.edges.light import LINEAR_LIGHT, LightSpline
 from rotrecon.simulation.ideal_drawing import outline_px
 from rotrecon.simulation.simulate import simulate
 
@@ -299,3 +300,25 @@ def test_the_sides_of_a_rendered_object():
         assert edges.sides[0].trusted
         errors.append(mean_of(edges, np.arange(60)) + 2.5)
     assert np.abs(errors).max() < 0.1
+
+
+@pytest.mark.parametrize("size", [(40, 60), (9, 13)])
+def test_light_between_pixels_is_that_of_the_cubic_splines(size):
+    rng = np.random.default_rng(0)
+    image = rng.integers(0, 256, (*size, 3), dtype=np.uint8)
+    point = rng.uniform(0, size[::-1], (30, 2))
+    angle = rng.uniform(0, 2 * np.pi, 30)
+    normal, offset = np.stack([np.cos(angle), np.sin(angle)], axis=1), rng.normal(size=30)
+    across = np.array([-4.0, -1.5, 0.0, 2.5])
+    place = point + (across[:, None] + offset)[..., None] * normal
+    expected = [
+        ndimage.map_coordinates(
+            ndimage.spline_filter(LINEAR_LIGHT[image[..., channel]]),
+            [place[..., 1], place[..., 0]],
+            prefilter=False,
+            mode="nearest",
+        )
+        for channel in range(3)
+    ]
+    found = LightSpline.of(image).across(point, normal, offset, across)
+    np.testing.assert_allclose(found, expected, atol=1e-12)

@@ -13,6 +13,7 @@ from rotrecon.rays.ball import Ball
 from rotrecon.rays.fitting import Depths, MatchedDepths, Outline, Refined, refine
 from rotrecon.rays.lateral import Lateral
 from rotrecon.rays.losses import CAUCHY, TUKEY, cauchy, robust_scale, tukey
+from rotrecon.rays.patch import clear_depth, without_speckle
 from rotrecon.rays.surfaces import Surface, turn_of
 
 FOCAL_PX = 700.0
@@ -232,3 +233,15 @@ def test_some_of_the_depths_are_depths():
     assert some.predict(truth).residual == pytest.approx(1.0)
     assert len(some) == 5
     assert len(replace(depths, steps=depths.steps)) == len(depths)
+
+
+@pytest.mark.parametrize("corner", [(0, 0), (25, 10), (28, 33)])
+def test_depth_without_speckle_is_the_same_wherever_it_is_asked_for(corner):
+    rng = np.random.default_rng(1)
+    depth_m = rng.uniform(0.5, 0.6, (40, 50)).astype(np.float32)
+    depth_m[rng.random(depth_m.shape) < 0.3] = np.nan
+    row, column = np.add.outer(corner[0], np.arange(12)), np.add.outer(corner[1], np.arange(17))
+    pixel = (row[:, None] * 50 + column).astype(np.int32)
+    expected = without_speckle(depth_m).ravel()[pixel]
+    pixel[rng.random(pixel.shape) < 0.2] = -1
+    np.testing.assert_array_equal(clear_depth(depth_m, pixel), np.where(pixel >= 0, expected, np.nan))

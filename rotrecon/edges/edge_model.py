@@ -54,7 +54,7 @@ class Model:
     seen: Floats
     """(3, T, N) less the level of the background."""
     step: Floats
-    """(3, N) by how much the object's level is above the background's at the middle of its zone."""
+    """(3, N) by how much the object's level is above the background's, each in its own zone."""
     background: Floats
     """(3, T) what the background changes by across."""
     inner: Floats

@@ -12,6 +12,7 @@ POLE = float(np.sqrt(3)) - 2
 MIRRORED = 32
 """Pixels before the first that the filter looks back on: of any farther off, less than rounding is left."""
 PICTURE = NUMBA.types.Array(NUMBA.uint8, 3, "A", readonly=True)
+"""Of bytes, perhaps a part of a larger one."""
 ROWS = NUMBA.types.Array(NUMBA.float64, 2, "C")
 """What the compiled function works on in place."""
 
