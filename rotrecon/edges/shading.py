@@ -55,7 +55,7 @@ def _bent(place_px: float, across_px: Floats, half_width_px: float) -> Floats:
 def _at(
     place_px: Floats, across_px: Floats, zone: int, half_width_px: float, seen_px: Floats, light: Floats, doubt: Floats
 ) -> Floats:
-    """See `Shading.at`: what is not a straight line of the root is fitted to what is none of the light."""
+    """See `Shading.at`: what of the root is no straight line is fitted to what of the light is none."""
     shape = np.empty((len(place_px), len(across_px), 3))
     off = seen_px - seen_px.mean()
     slopes = off / (off * off).sum()
