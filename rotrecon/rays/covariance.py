@@ -12,6 +12,8 @@ from rotrecon.rays.whitening import Whitened
 
 REPEATING = 0.25
 """Likeness of errors above which neighbouring pixels repeat each other."""
+ROUGHER = 1.1
+"""By how much differences at limbs err more than by their derivatives, which change there within an error (measured)."""
 TAMED_PX = 0.1
 """Distance from the outline within which depths count as if they were that far inside, where errors are alike."""
 
@@ -53,7 +55,7 @@ def covariance_of_differences(
     left = whitened.predict(surface)
     scaled = left.residual / sigma
     columns = left.columns * ((tukey(scaled)[1] > 0) / sigma)
-    weights = raw_sigma / sigma * whitened.returned(columns)
+    weights = ROUGHER * raw_sigma / sigma * whitened.returned(columns)
     product = weights @ _smeared(weights, patch, pixels, whitened.likeness).T
     return _sandwich(columns, product, scaled, likeness.independent_share, free, _of_outlines(surface, outlines))
 

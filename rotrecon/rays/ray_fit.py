@@ -131,7 +131,7 @@ def by_differences(fit: RayFit, patch: Patch, units: Floats, most: int, rounds: 
     for _ in range(rounds):
         size_m = surface.size_m
         pixels = near(surface, patch, patch.drawn & np.isfinite(patch.depth_m), fit.sight)
-        pixels = _banded(pixels, patch.shape[1], most)
+        pixels = _banded(pixels, patch, most)
         raw = depths_of(patch, pixels).predict(surface).residual
         raw_sigma, raw_likeness = _noise_of(patch, pixels, raw)
         pixels = pixels[np.abs(raw) < TUKEY * raw_sigma]
@@ -148,11 +148,16 @@ def by_differences(fit: RayFit, patch: Patch, units: Floats, most: int, rounds: 
     return replace(fit, surface=surface, residual=residual, own_covariance=own_covariance)
 
 
-def _banded(pixels: Indices, width: int, most: int) -> Indices:
-    """Pixels of a patch in slanted bands so far apart that about so many are left; most of their neighbours are too."""
+def _banded(pixels: Indices, patch: Patch, most: int) -> Indices:
+    """Those of some pixels in slanted bands so far apart that about so many are left; most of their neighbours are too.
+
+    The bands are the frame's, so that another drawing compares the same pixels.
+    """
     apart = -(-len(pixels) // most)
-    row, column = np.divmod(pixels, width)
-    return pixels[(row + column) // BAND_PX % apart == 0] if apart > 1 else pixels
+    if apart == 1:
+        return pixels
+    row, column = np.divmod(patch.frame_pixels(pixels), patch.camera.width)
+    return pixels[(row + column) // BAND_PX % apart == 0]
 
 
 def _finished(
