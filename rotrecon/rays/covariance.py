@@ -13,7 +13,7 @@ from rotrecon.rays.whitening import Whitened
 REPEATING = 0.25
 """Likeness of errors above which neighbouring pixels repeat each other."""
 ROUGHER = 1.1
-"""By how much differences at limbs err more than by their derivatives, which change there within an error (measured)."""
+"""By how much differences err more than their derivatives say, which at limbs change within an error (measured)."""
 TAMED_PX = 0.1
 """Distance from the outline within which depths count as if they were that far inside, where errors are alike."""
 
@@ -40,19 +40,15 @@ def covariance_of_depths(
 
 
 def covariance_of_differences(
+    left: Prediction,
     whitened: Whitened,
     fitted: tuple[Surface, Patch, Indices],
     free: Bools,
-    noise: tuple[float, Likeness],
-    raw_sigma: float,
+    noise: tuple[float, Likeness, float],
     outlines: Outlines,
 ) -> Floats:
-    """The same of a surface fitted to what is left of depths once foretold errors are taken off.
-
-    `noise` is of what is left, `raw_sigma` that of the depths.
-    """
-    (surface, patch, pixels), (sigma, likeness) = fitted, noise
-    left = whitened.predict(surface)
+    """The same of a surface fitted to what is left of whitened depths; `noise` is of that, with the depths' sigma."""
+    (surface, patch, pixels), (sigma, likeness, raw_sigma) = fitted, noise
     scaled = left.residual / sigma
     columns = left.columns * ((tukey(scaled)[1] > 0) / sigma)
     weights = ROUGHER * raw_sigma / sigma * whitened.returned(columns)

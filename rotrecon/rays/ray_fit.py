@@ -22,8 +22,10 @@ HASTY_PIXELS = 2500
 """Enough for a first round, evenly; the next takes all that tell something new."""
 SETTLED_SIZE = 1e-4
 """A round that changes the radius by less than this share is the last."""
-MOST_DIFFERENCES, BAND_PX = 16000, 12
-"""Depths that are compared with their neighbours', and the width of the bands they stand in where there are more."""
+MOST_DIFFERENCES, TILE_PX = 16000, 12
+"""Depths that are compared with their neighbours', and the side of the tiles they stand in where there are more."""
+PLASTIC = 0.7548776662466927
+"""Fractional parts of its multiples and its square's fall evenly in a plane."""
 NEAR_PX = 4.0
 """Pixels so far outside the outline still speak for or against it."""
 INLIER_SIGMA = 3.0
@@ -131,33 +133,37 @@ def by_differences(fit: RayFit, patch: Patch, units: Floats, most: int, rounds: 
     for _ in range(rounds):
         size_m = surface.size_m
         pixels = near(surface, patch, patch.drawn & np.isfinite(patch.depth_m), fit.sight)
-        pixels = _banded(pixels, patch, most)
+        pixels = _tiled(pixels, patch, most)
+        if len(pixels) < 2 * len(units):
+            break
         raw = depths_of(patch, pixels).predict(surface).residual
         raw_sigma, raw_likeness = _noise_of(patch, pixels, raw)
         pixels = pixels[np.abs(raw) < TUKEY * raw_sigma]
         left = whitened(depths_of(patch, pixels), pixels, patch.shape, raw_likeness)
-        noise = _noise_of(patch, pixels, left.predict(surface).residual)
+        sigma, likeness = _noise_of(patch, pixels, left.predict(surface).residual)
         measurements: list[Measurement] = [left, *(outline for outline, _ in fit.outlines)]
-        weighting = [(noise[0], noise[1].independent_share), *((1.0, share) for _, share in fit.outlines)]
+        weighting = [(sigma, likeness.independent_share), *((1.0, share) for _, share in fit.outlines)]
         surface = refine(surface, measurements, weighting, tukey, fit.free, units, FINE_ITERATIONS).surface
-        fitted = (surface, patch, pixels)
-        own_covariance = partial(covariance_of_differences, left, fitted, fit.free, noise, raw_sigma, fit.outlines)
+        told, fitted = left.predict(surface), (surface, patch, pixels)
+        noise = (*_noise_of(patch, pixels, told.residual), raw_sigma)
+        own_covariance = partial(covariance_of_differences, told, left, fitted, fit.free, noise, fit.outlines)
         if abs(surface.size_m - size_m) < SETTLED_SIZE * size_m:
             break
     residual = predicted(patch, fit.pixels, surface, fit.sight).residual
     return replace(fit, surface=surface, residual=residual, own_covariance=own_covariance)
 
 
-def _banded(pixels: Indices, patch: Patch, most: int) -> Indices:
-    """Those of some pixels in slanted bands so far apart that about so many are left; most of their neighbours are too.
+def _tiled(pixels: Indices, patch: Patch, most: int) -> Indices:
+    """About so many of some pixels, in evenly placed tiles (Roberts 2018): most of their neighbours are there too.
 
-    The bands are the frame's, so that another drawing compares the same pixels.
+    The tiles are the frame's, so that another drawing compares the same pixels.
     """
-    apart = -(-len(pixels) // most)
-    if apart == 1:
+    share = most / max(len(pixels), 1)
+    if share >= 1:
         return pixels
     row, column = np.divmod(patch.frame_pixels(pixels), patch.camera.width)
-    return pixels[(row + column) // BAND_PX % apart == 0]
+    place = row // TILE_PX * PLASTIC + column // TILE_PX * PLASTIC**2
+    return pixels[place % 1.0 < share]
 
 
 def _finished(
