@@ -39,8 +39,8 @@ TURNED = """
 """.split()
 PHOTOMETRY = """
     photometry.splines photometry.carrying photometry.agreement photometry.visible photometry.matches
-    photometry.outlines photometry.sharpening photometry.sureness photometry.climbing photometry.scanning
-    photometry.drawn photometry.refinement
+    photometry.outlines photometry.sharpening photometry.sureness photometry.contest photometry.climbing
+    photometry.scanning photometry.drawn photometry.refinement
 """.split()
 JUDGED = """
     two_objects intervals recognition by_pictures soundness judgement section_radii found by_rays calibration

@@ -6,6 +6,7 @@ from dataclasses import dataclass, replace
 import numpy as np
 
 from rotrecon.arrays import Bools, Floats
+from rotrecon.photometry.contest import CONTESTED, contest
 from rotrecon.photometry.matches import Match, Other, matches_of
 from rotrecon.photometry.outlines import CarriedOutline, Edge, outline_in
 from rotrecon.photometry.sharpening import Sharpened, sharpened
@@ -51,6 +52,8 @@ class Climbed:
     edges: tuple[Edge, ...]
     sharpened: Sharpened
     """Depth round the surface as the pictures have it."""
+    contested: bool = False
+    """Whether outlines and texture speak against each other wherever the outlines are sought."""
 
     def credit(self, surface: Surface, sigma: float, share: float, *, by_edges: bool) -> float:
         """How much of what was compared a surface explains, in half a likelihood's logarithm.
@@ -94,7 +97,28 @@ def climb(start: Surface, free: Bools, sigma: float, scene: Scene, others: tuple
         matches = tuple(replace(match, sigma=DISTRUST * match.sigma) for match in matches)
         surface = _agreeing(surface, matches, edges, tukey, free, units)
         sharp = sharpened(surface, patch, pixels, matches)
+    elif edges and contest(surface, matches, free, units) > CONTESTED:
+        return _let_go(
+            Climbed(start, surface, free, pixels, by_depth, matches, tuple(edges), sharp), sigma, scene, others
+        )
     return Climbed(start, surface, free, pixels, by_depth, matches, tuple(edges), sharp)
+
+
+def _let_go(held: Climbed, sigma: float, scene: Scene, others: tuple[Other, ...]) -> Climbed:
+    """Where texture has a surface that edges drew elsewhere, with the edges there if they agree to it."""
+    patch, free, units = scene.patch, held.free, held.start.units(scene.length_m)
+    surface = _agreeing(held.surface, held.matches, (), tukey, free, units)
+    edges = edges_of(surface, scene, others)
+    pixels, by_depth = _pixels(surface, patch, sigma)
+    matches = matches_of(surface, patch, pixels, others, ROUNDS[-1][1])
+    if not matches:
+        return replace(held, contested=True)
+    together = _agreeing(surface, matches, edges, tukey, free, units)
+    contested = contest(together, matches, free, units) > CONTESTED
+    if contested:
+        together, edges = _agreeing(surface, matches, (), tukey, free, units), []
+    sharp = sharpened(together, patch, pixels, matches)
+    return Climbed(held.start, together, free, pixels, by_depth, matches, tuple(edges), sharp, contested)
 
 
 def _agreeing(

@@ -71,6 +71,8 @@ class Refinement:
     @property
     def doubts(self) -> tuple[str, ...]:
         """Why no tool should rely on it."""
+        if self.climbed.contested:
+            return ("its texture and its outline speak for different sizes; light it better, or take more views",)
         if self.textured > TEXTURED or (self.by_depth and self.climbed.by_depth > DEPTH_SHARE):
             return ()
         return (
