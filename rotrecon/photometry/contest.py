@@ -1,4 +1,4 @@
-"""Whether texture speaks against where outlines hold a surface: what stands near may have drawn its outline to itself."""
+"""Whether texture speaks against where outlines hold a surface: the edge of something near may have drawn it there."""
 
 from collections.abc import Sequence
 
