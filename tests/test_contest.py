@@ -57,6 +57,7 @@ def test_a_cone_whose_outline_is_something_elses_is_where_its_texture_has_it(mon
     assert isinstance(found.surface, Lateral)
     sigma = sigma_of(found, one.scene().patch.shape)
     assert sigma < WRONG_SLOPE / 4
+    assert isinstance(one.surface, Lateral)
     assert abs(found.surface.slope - one.surface.slope) < 3 * sigma
     assert found.contested == always
     assert bool(found.edges) != always
