@@ -81,12 +81,15 @@ def climb(start: Surface, free: Bools, sigma: float, scene: Scene, others: tuple
     `sigma` is that of matched depth. None where there is neither texture nor an outline.
     """
     patch, units = scene.patch, start.units(scene.length_m)
-    surface = sought = start
-    edges = edges_of(surface, scene, others)
+    surface, sought, missing = start, start, others[:-1]
+    # the way is found with the outlines in the picture from farthest away
+    edges = edges_of(surface, scene, others[-1:])
     pixels, by_depth, matches = np.zeros(0, dtype=np.bool_), 0.0, tuple[Match, ...]()
-    for loss, most in ROUNDS:
-        if moved_px(sought, surface, patch, others) > SOUGHT_AGAIN_PX:
+    for number, (loss, most) in enumerate(ROUNDS):
+        if number and moved_px(sought, surface, patch, others) > SOUGHT_AGAIN_PX:
             sought, edges = surface, edges_of(surface, scene, others)
+        elif number:
+            edges = [*edges, *edges_in(missing, sought, scene)]
         pixels, by_depth = _pixels(surface, patch, sigma)
         matches = matches_of(surface, patch, pixels, others, most)
         if not matches and not edges:
@@ -143,10 +146,17 @@ def edges_of(surface: Surface, scene: Scene, others: tuple[Other, ...]) -> list[
     if isinstance(surface, Ball):
         return []
     own = seen_outline(surface, scene.patch, scene.segments, scene.length_m).edges
+    return [*(() if own is None else (own,)), *edges_in(others, surface, scene)]
+
+
+def edges_in(others: tuple[Other, ...], surface: Surface, scene: Scene) -> list[Edge]:
+    """The outline in some other pictures."""
+    if isinstance(surface, Ball) or not others:
+        return []
     rays = scene.patch.rays[:, scene.patch.kept]
     points = (rays * surface.meet(rays)[0]).T
     low, high = np.percentile(surface.heights(points), [1, 99])
-    edges: list[Edge] = [] if own is None else [own]
+    edges: list[Edge] = []
     for other in others:
         seen = outline_in(other.view, other.carrier, surface, scene.patch, (float(low), float(high))).edges
         if seen is not None:

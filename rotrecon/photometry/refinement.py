@@ -26,7 +26,8 @@ from rotrecon.turned.turned import Turned
 SHARP_SHARE = 0.3
 """Of the pixels that a fit rests on, how many must have a depth from the pictures to take their place."""
 FARTHEST_PX = 4.0
-"""Pictures are matched to a fraction of a pixel; a surface that moves by more has lost its way."""
+"""Pictures are matched to a fraction of a pixel; a surface that moves by more has lost its way, but for a plain one,
+whose depth is anyhow that of its shading."""
 AGREEING_SHARE = 0.75
 """Of the pixels, how many must agree in brightness for a surface to be where it is said to be."""
 UNSURE = 0.1
@@ -95,11 +96,16 @@ def refined(one: Ranked, scene: Scene, others: tuple[Other, ...]) -> Refinement 
     if not others or fit is None or isinstance(fit.surface, Turned):
         return None
     climbed = climb(fit.surface, fit.free, fit.sigma, scene, others)
-    if climbed is None or not moved_px(fit.surface, climbed.surface, scene.patch, others) < FARTHEST_PX:
+    if climbed is None:
         return None
-    refinement = _finished(one, fit, climbed, scene, by_depth=True)
+    size = fit.surface.size_place
+    near = moved_px(fit.surface, climbed.surface, scene.patch, others) < FARTHEST_PX
+    refinement = _finished(one, fit, climbed, scene, by_depth=near)
+    by_outline = refinement.textured < PLAIN and refinement.held
+    if not near and not by_outline:
+        return None
     as_drawn = as_wide_as_drawn(climbed.surface, scene.patch.camera, scene.segments, scene.length_m)
-    sure = float(np.sqrt(fit.covariance.diagonal()[fit.surface.size_place])) < UNSURE * fit.surface.size_m
+    sure = by_outline or float(np.sqrt(fit.covariance[size, size])) < UNSURE * fit.surface.size_m
     trusted = climbed.agreeing > AGREEING_SHARE and climbed.by_depth > DEPTH_SHARE and sure and as_drawn
     return replace(refinement, trusted=trusted)
 
