@@ -124,6 +124,14 @@ def _let_go(held: Climbed, sigma: float, scene: Scene, others: tuple[Other, ...]
     return Climbed(held.start, together, free, pixels, by_depth, matches, tuple(edges), sharp, contested)
 
 
+def again(climbed: Climbed, scene: Scene) -> Climbed:
+    """Where a surface goes on to with the pixels and the edges that are known."""
+    units = climbed.surface.units(scene.length_m)
+    surface = _agreeing(climbed.surface, climbed.matches, climbed.edges, tukey, climbed.free, units)
+    sharp = sharpened(surface, scene.patch, climbed.pixels, climbed.matches)
+    return replace(climbed, surface=surface, sharpened=sharp)
+
+
 def _agreeing(
     surface: Surface, matches: tuple[Match, ...], edges: Sequence[Edge], loss: Loss, free: Bools, units: Floats
 ) -> Surface:

@@ -8,15 +8,16 @@ import numpy as np
 from rotrecon.arrays import Floats, freeze
 from rotrecon.frame import Frame
 from rotrecon.photometry.carrying import carrier_of
-from rotrecon.photometry.climbing import DEPTH_SHARE, PLAIN, Climbed, climb, moved_px
-from rotrecon.photometry.drawn import as_wide_as_drawn, drawn
+from rotrecon.photometry.climbing import DEPTH_SHARE, PLAIN, SOUGHT_AGAIN_PX, Climbed, again, climb, moved_px
+from rotrecon.photometry.drawn import as_wide_as_drawn, drawn, may_be_ball
 from rotrecon.photometry.matches import FEWEST_PIXELS, Other
 from rotrecon.photometry.scanning import TILTS_RAD, scanned
-from rotrecon.photometry.sureness import covariance_of, sigma_by_outline
+from rotrecon.photometry.sureness import covariance_of, off_outline, sigma_by_outline
 from rotrecon.photometry.visible import clear_of
 from rotrecon.rays.ball import Ball
 from rotrecon.rays.correlation import Likeness
 from rotrecon.rays.hypotheses import Held, Scene
+from rotrecon.rays.lateral import Lateral
 from rotrecon.rays.ray_fit import RayFit, Sight, predicted
 from rotrecon.rays.robust import PARAMETERS, Ranked
 from rotrecon.rays.surfaces import Surface
@@ -39,6 +40,9 @@ UNTEXTURED_DOUBT, UNTEXTURED_BALL_DOUBT, TEXTURE_HOLDS = 0.015, 0.03, 0.1
 that of a ball; and the share of textured pixels at which nothing of it is left."""
 OUTLINE_TELLS = 0.02
 """Largest standard error of the radius over the radius that outlines may leave of a plain thing."""
+OUTLINES_APART = 0.03
+"""Share of the radius by which an outline may lie beside the surface that all outlines of a plain thing agree on best:
+more, and one of them is of something else."""
 FULLY_TEXTURED = 0.5
 """Of an object's pixels, how many must have a depth from the pictures to have been enough to match."""
 ALIKE = 5.0
@@ -118,19 +122,30 @@ def sought(scene: Scene, held: Held, like: RayFit, others: tuple[Other, ...]) ->
     known = scene.patch.depth_m[scene.patch.drawn]
     distance_m = float(np.nanmedian(known)) if np.isfinite(known).any() else 1.0
     found: list[Refinement] = []
-    shapes: tuple[Shape, ...] = ("cylinder", "cone", "sphere")
+    shapes: tuple[Shape, ...] = ("cylinder", "cone", "sphere") if may_be_ball(scene.segments) else ("cylinder", "cone")
     for shape in shapes:
-        start = held.limiting(drawn(shape, scene.patch, scene.segments, distance_m))
-        tilts = np.zeros(1) if shape == "sphere" or held.direction is not None else TILTS_RAD
-        start, alike = scanned(start, scene.patch, clear_of(start, scene.patch), others[0], tilts)
-        if alike < LEAST_CORRELATION:
-            continue
-        climbed = climb(start, held.free(start), like.sigma, scene, others)
+        climbed = _widened(found[0].climbed, scene, others) if shape == "cone" and found else None
+        if climbed is None:
+            start = held.limiting(drawn(shape, scene.patch, scene.segments, distance_m))
+            tilts = np.zeros(1) if shape == "sphere" or held.direction is not None else TILTS_RAD
+            start, alike = scanned(start, scene.patch, clear_of(start, scene.patch), others[0], tilts)
+            if alike >= LEAST_CORRELATION:
+                climbed = climb(start, held.free(start), like.sigma, scene, others)
         if climbed is not None:
             base = replace(like, free=climbed.free, outlines=())
             one = Ranked(shape, climbed.surface, base, 0.0)
             found.append(_finished(one, base, climbed, scene, by_depth=False))
     return tuple(found)
+
+
+def _widened(cylinder: Climbed, scene: Scene, others: tuple[Other, ...]) -> Climbed | None:
+    """The cone near a cylinder; None where it lies so far that it has to be sought by itself."""
+    surface = cylinder.surface
+    if not isinstance(surface, Lateral):
+        return None
+    start, free = replace(surface, tapers=True), np.append(cylinder.free, True)
+    cone = again(replace(cylinder, surface=start, free=free), scene)
+    return cone if moved_px(surface, cone.surface, scene.patch, others) < SOUGHT_AGAIN_PX else None
 
 
 def weighed(found: tuple[Refinement, ...]) -> tuple[Refinement, ...]:
@@ -193,6 +208,7 @@ def _finished(one: Ranked, fit: RayFit, climbed: Climbed, scene: Scene, *, by_de
     better = replace(fit, surface=surface, pixels=pixels, sight=sight, residual=residual, **told)
     held = textured > PLAIN or (
         sigma_by_outline(surface, climbed.edges, climbed.free, scene.length_m) < OUTLINE_TELLS * surface.size_m
+        and off_outline(surface, climbed.edges) < OUTLINES_APART
     )
     whole = replace(one, surface=surface, fit=better)
     return Refinement(whole, depth_m, climbed, textured, by_depth, trusted=False, held=held)

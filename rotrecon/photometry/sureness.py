@@ -94,6 +94,13 @@ def sigma_by_outline(surface: Surface, edges: Sequence[Edge], free: Bools, lengt
     return float(np.sqrt(covariance[surface.size_place, surface.size_place]))
 
 
+def off_outline(surface: Surface, edges: Sequence[Edge]) -> float:
+    """Root mean square distance, over the radius, of the outline that lies farthest from a surface's; 0 for none."""
+    half_width_px = surface.size_m / float(surface.center_m[2]) * surface.focal_px
+    apart_px = [np.sqrt(np.mean(np.square(edge.predict(surface).residual * edge.sigma_px))) for edge in edges]
+    return float(max(apart_px, default=0.0)) / half_width_px
+
+
 def _texture(change: Change) -> Floats:
     """Change (N,) of the predicted grey values with a shift of the other picture, a pixel."""
     return change.by_depth / np.maximum(change.px_by_depth, 1e-12)
