@@ -34,7 +34,8 @@ AGREEING_SHARE = 0.75
 UNSURE = 0.1
 """Standard error of the radius over the radius of a fit that is no start."""
 TEXTURED = 0.3
-"""Of an object's pixels, how many must have a depth from the pictures for these to say what shape it has."""
+"""Of an object's pixels, how many must have a depth from the pictures for these to say what shape it has, or what size
+where no outline is seen: shading passes for texture on up to a fifth."""
 UNTEXTURED_DOUBT, UNTEXTURED_BALL_DOUBT, TEXTURE_HOLDS = 0.015, 0.03, 0.1
 """Standard error of the radius, over the radius, that outline and shading of a plain object leave, and shading alone
 that of a ball; and the share of textured pixels at which nothing of it is left."""
@@ -111,7 +112,7 @@ def refined(one: Ranked, scene: Scene, others: tuple[Other, ...]) -> Refinement 
     as_drawn = as_wide_as_drawn(climbed.surface, scene.patch.camera, scene.segments, scene.length_m)
     sure = by_outline or float(np.sqrt(fit.covariance[size, size])) < UNSURE * fit.surface.size_m
     trusted = climbed.agreeing > AGREEING_SHARE and climbed.by_depth > DEPTH_SHARE and sure and as_drawn
-    return replace(refinement, trusted=trusted)
+    return replace(refinement, trusted=trusted, held=refinement.held or (trusted and refinement.textured > PLAIN))
 
 
 def sought(scene: Scene, held: Held, like: RayFit, others: tuple[Other, ...]) -> tuple[Refinement, ...]:
@@ -206,7 +207,7 @@ def _finished(one: Ranked, fit: RayFit, climbed: Climbed, scene: Scene, *, by_de
     residual = predicted(replace(patch, depth_m=depth_m), pixels, surface, sight).residual
     told = {"own_covariance": lambda: covariance, "doubt": 0.0}
     better = replace(fit, surface=surface, pixels=pixels, sight=sight, residual=residual, **told)
-    held = textured > PLAIN or (
+    held = textured > (PLAIN if climbed.edges else TEXTURED) or (
         sigma_by_outline(surface, climbed.edges, climbed.free, scene.length_m) < OUTLINE_TELLS * surface.size_m
         and off_outline(surface, climbed.edges) < OUTLINES_APART
     )
