@@ -150,20 +150,20 @@ def _pixels(surface: Surface, patch: Patch, sigma: float) -> tuple[Bools, float]
 
 
 def edges_of(surface: Surface, scene: Scene, others: tuple[Other, ...]) -> list[Edge]:
-    """The outline in all pictures; none of a ball, whose edge is seen too far inside where it is the brighter side."""
-    if isinstance(surface, Ball):
-        return []
+    """The outline in all pictures."""
     own = seen_outline(surface, scene.patch, scene.segments, scene.length_m).edges
     return [*(() if own is None else (own,)), *edges_in(others, surface, scene)]
 
 
 def edges_in(others: tuple[Other, ...], surface: Surface, scene: Scene) -> list[Edge]:
     """The outline in some other pictures."""
-    if isinstance(surface, Ball) or not others:
+    if not others:
         return []
-    rays = scene.patch.rays[:, scene.patch.kept]
-    points = (rays * surface.meet(rays)[0]).T
-    low, high = np.percentile(surface.heights(points), [1, 99])
+    low, high = 0.0, 0.0
+    if not isinstance(surface, Ball):
+        rays = scene.patch.rays[:, scene.patch.kept]
+        points = (rays * surface.meet(rays)[0]).T
+        low, high = np.percentile(surface.heights(points), [1, 99])
     edges: list[Edge] = []
     for other in others:
         seen = outline_in(other.view, other.carrier, surface, scene.patch, (float(low), float(high))).edges

@@ -14,7 +14,6 @@ from rotrecon.photometry.matches import FEWEST_PIXELS, Other
 from rotrecon.photometry.scanning import TILTS_RAD, scanned
 from rotrecon.photometry.sureness import covariance_of, off_outline, sigma_by_outline
 from rotrecon.photometry.visible import clear_of
-from rotrecon.rays.ball import Ball
 from rotrecon.rays.correlation import Likeness
 from rotrecon.rays.hypotheses import Held, Scene
 from rotrecon.rays.lateral import Lateral
@@ -36,9 +35,9 @@ UNSURE = 0.1
 TEXTURED = 0.3
 """Of an object's pixels, how many must have a depth from the pictures for these to say what shape it has, or what size
 where no outline is seen: shading passes for texture on up to a fifth."""
-UNTEXTURED_DOUBT, UNTEXTURED_BALL_DOUBT, TEXTURE_HOLDS = 0.015, 0.03, 0.1
-"""Standard error of the radius, over the radius, that outline and shading of a plain object leave, and shading alone
-that of a ball; and the share of textured pixels at which nothing of it is left."""
+UNTEXTURED_DOUBT, TEXTURE_HOLDS = 0.015, 0.1
+"""Standard error of the radius, over the radius, that outline and shading of a plain object leave; and the share of
+textured pixels at which nothing of it is left."""
 OUTLINE_TELLS = 0.02
 """Largest standard error of the radius over the radius that outlines may leave of a plain thing."""
 OUTLINES_APART = 0.03
@@ -201,8 +200,7 @@ def _finished(one: Ranked, fit: RayFit, climbed: Climbed, scene: Scene, *, by_de
         pixels = np.flatnonzero(known).astype(np.int32)
         sight = Sight(guard=float(np.percentile(surface.off_middle(patch.rays[:, pixels]), 95)))
     size = surface.size_place
-    doubt = UNTEXTURED_BALL_DOUBT if isinstance(surface, Ball) else UNTEXTURED_DOUBT
-    left_m = doubt * max(1.0 - textured / TEXTURE_HOLDS, 0.0) * surface.size_m
+    left_m = UNTEXTURED_DOUBT * max(1.0 - textured / TEXTURE_HOLDS, 0.0) * surface.size_m
     covariance[size, size] += left_m**2 * climbed.free[size]
     residual = predicted(replace(patch, depth_m=depth_m), pixels, surface, sight).residual
     told = {"own_covariance": lambda: covariance, "doubt": 0.0}
