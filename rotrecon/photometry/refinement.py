@@ -12,7 +12,7 @@ from rotrecon.photometry.climbing import DEPTH_SHARE, PLAIN, SOUGHT_AGAIN_PX, Cl
 from rotrecon.photometry.drawn import as_wide_as_drawn, drawn, may_be_ball
 from rotrecon.photometry.matches import FEWEST_PIXELS, Other
 from rotrecon.photometry.scanning import TILTS_RAD, scanned
-from rotrecon.photometry.sureness import covariance_of, off_outline, sigma_by_outline
+from rotrecon.photometry.sureness import covariance_of, outlined
 from rotrecon.photometry.visible import clear_of
 from rotrecon.rays.correlation import Likeness
 from rotrecon.rays.hypotheses import Held, Scene
@@ -38,11 +38,6 @@ where no outline is seen: shading passes for texture on up to a fifth."""
 UNTEXTURED_DOUBT, TEXTURE_HOLDS = 0.015, 0.1
 """Standard error of the radius, over the radius, that outline and shading of a plain object leave; and the share of
 textured pixels at which nothing of it is left."""
-OUTLINE_TELLS = 0.02
-"""Largest standard error of the radius over the radius that outlines may leave of a plain thing."""
-OUTLINES_APART = 0.03
-"""Share of the radius by which an outline may lie beside the surface that all outlines of a plain thing agree on best:
-more, and one of them is of something else."""
 FULLY_TEXTURED = 0.5
 """Of an object's pixels, how many must have a depth from the pictures to have been enough to match."""
 ALIKE = 5.0
@@ -205,9 +200,7 @@ def _finished(one: Ranked, fit: RayFit, climbed: Climbed, scene: Scene, *, by_de
     residual = predicted(replace(patch, depth_m=depth_m), pixels, surface, sight).residual
     told = {"own_covariance": lambda: covariance, "doubt": 0.0}
     better = replace(fit, surface=surface, pixels=pixels, sight=sight, residual=residual, **told)
-    held = textured > (PLAIN if climbed.edges else TEXTURED) or (
-        sigma_by_outline(surface, climbed.edges, climbed.free, scene.length_m) < OUTLINE_TELLS * surface.size_m
-        and off_outline(surface, climbed.edges) < OUTLINES_APART
-    )
+    by_texture = textured > (PLAIN if climbed.edges else TEXTURED)
+    held = by_texture or outlined(surface, climbed.edges, climbed.free, scene.length_m)
     whole = replace(one, surface=surface, fit=better)
     return Refinement(whole, depth_m, climbed, textured, by_depth, trusted=False, held=held)
