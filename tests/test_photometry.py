@@ -2,6 +2,7 @@
 
 from dataclasses import replace
 
+import cv2
 import numpy as np
 import pytest
 from hypothesis import given, settings
@@ -15,6 +16,7 @@ from rotrecon.photometry.agreement import Agreement, shades_of
 from rotrecon.photometry.carrying import Carrier
 from rotrecon.photometry.outlines import CarriedOutline
 from rotrecon.photometry.refinement import Refinement, others_of, refined, sought, weighed
+from rotrecon.photometry.smearing import smeared_apart
 from rotrecon.photometry.splines import SCIPY, SUPPORT_PX, Spline, spline_of
 from rotrecon.photometry.sureness import outlined, sigma_by_outline
 from rotrecon.photometry.visible import clear_of, outward, seen_too
@@ -61,6 +63,27 @@ def agreement_of(surface: Surface) -> Agreement:
     grey = painted(surface, CAMERA, np.eye(4)).ravel()[usable]
     shades = shades_of(outward(surface, (rays * surface.trace(rays).depth_m)[:, usable]))
     return Agreement(rays[:, usable], grey, shades, other, CARRIER)
+
+
+@pytest.mark.parametrize("surface", SURFACES, ids=["cylinder", "cone", "ball"])
+def test_pictures_agree_that_are_blurred_along_their_own_pixels(surface):
+    blur_px = 2.0
+    exact = agreement_of(surface)
+    there, _ = CARRIER.carried(exact.rays, surface.meet(exact.rays)[0])
+    size = np.array([[CAMERA.width], [CAMERA.height]])
+    # what is beyond a picture's border is not in its blur
+    inside = [(one > 4 * blur_px) & (one < size - 4 * blur_px) for one in (CAMERA.project(exact.rays.T).T, there)]
+    exact = exact.chosen(np.concatenate(inside).all(axis=0))
+    pictures = [painted(surface, CAMERA, pose) for pose in (np.eye(4), CARRIER.T_view_reference)]
+    first, second = (cv2.GaussianBlur(picture, (0, 0), blur_px) for picture in pictures)
+    place = np.rint(CAMERA.project(exact.rays.T)).astype(int)
+    other = Spline(SCIPY.spline_filter(second), np.zeros(2))
+    grey = first[place[:, 1], place[:, 0]]
+    lacking = smeared_apart(surface, exact.rays, CAMERA, CARRIER, other, blur_px)
+    apart, together = (
+        np.std(replace(exact, grey=one, other=other).predict(surface).residual) for one in (grey, grey - lacking)
+    )
+    assert together < 0.4 * apart
 
 
 def refinement_of(one: Pair, start: Surface, frame=None) -> Refinement:

@@ -8,9 +8,11 @@ from rotrecon.arrays import Bools, Floats, Indices, freeze
 from rotrecon.frame import View
 from rotrecon.photometry.agreement import LEAST_SIGMA, Agreement, shades_of
 from rotrecon.photometry.carrying import Carrier
+from rotrecon.photometry.smearing import smeared_apart
 from rotrecon.photometry.splines import smoothed, spline_of
 from rotrecon.photometry.visible import outward, seen_too
 from rotrecon.rays.correlation import Likeness, likeness_of
+from rotrecon.rays.limbs import PIXEL_BLUR_PX
 from rotrecon.rays.losses import robust_scale
 from rotrecon.rays.patch import Patch
 from rotrecon.rays.ray_fit import INLIER_SIGMA, spread
@@ -20,6 +22,8 @@ from rotrecon.rays.traces import Rays
 SMOOTHING_PX = 0.7
 """Standard deviation of the low pass on both pictures: without it noise passes for texture where there is little, and
 intervals are half as wide as they should be; with twice as much the limbs reach the inner pixels (both measured)."""
+BLUR_PX = float(np.hypot(SMOOTHING_PX, PIXEL_BLUR_PX))
+"""With that of a camera's own pixels."""
 FEWEST_PIXELS = 100
 """Fewer have no texture to speak of."""
 
@@ -80,7 +84,8 @@ def _match(
         return None
     rays = np.ascontiguousarray(patch.rays[:, pixels])
     shades = shades_of(outward(surface, rays * surface.meet(rays)[0]))
-    agreement = Agreement(rays, grey[pixels], shades, spline, other.carrier)
+    lacking = smeared_apart(surface, rays, patch.camera, other.carrier, spline, BLUR_PX)
+    agreement = Agreement(rays, grey[pixels] - lacking, shades, spline, other.carrier)
     residual = agreement.predict(surface).residual
     sigma = max(robust_scale(residual), LEAST_SIGMA)
     image = np.full(patch.shape, np.nan)
