@@ -81,15 +81,16 @@ def climb(start: Surface, free: Bools, sigma: float, scene: Scene, others: tuple
     `sigma` is that of matched depth. None where there is neither texture nor an outline.
     """
     patch, units = scene.patch, start.units(scene.length_m)
-    surface, sought, missing = start, start, others[:-1]
-    # the way is found with the outlines in the picture from farthest away
-    edges = edges_of(surface, scene, others[-1:])
+    surface = sought = start
+    # the outline in the picture from farthest away is enough to find the way
+    far = max(others, key=lambda other: float(np.linalg.norm(other.carrier.center_m)))
+    edges = edges_of(surface, scene, (far,))
     pixels, by_depth, matches = np.zeros(0, dtype=np.bool_), 0.0, tuple[Match, ...]()
     for number, (loss, most) in enumerate(ROUNDS):
         if number and moved_px(sought, surface, patch, others) > SOUGHT_AGAIN_PX:
             sought, edges = surface, edges_of(surface, scene, others)
         elif number:
-            edges = [*edges, *edges_in(missing, sought, scene)]
+            edges += edges_in(tuple(other for other in others if other is not far), sought, scene)
         pixels, by_depth = _pixels(surface, patch, sigma)
         matches = matches_of(surface, patch, pixels, others, most)
         if not matches and not edges:
