@@ -38,9 +38,9 @@ TURNED = """
     turned.runs turned.parts turned.smoothness turned.turned_start turned.turned_fit
 """.split()
 PHOTOMETRY = """
-    photometry.splines photometry.carrying photometry.agreement photometry.visible photometry.matches
-    photometry.outlines photometry.sharpening photometry.sureness photometry.climbing photometry.scanning
-    photometry.drawn photometry.refinement
+    photometry.splines photometry.carrying photometry.agreement photometry.visible photometry.smearing
+    photometry.matches photometry.outlines photometry.sharpening photometry.sureness photometry.contest
+    photometry.climbing photometry.scanning photometry.drawn photometry.refinement
 """.split()
 JUDGED = """
     two_objects intervals recognition by_pictures soundness judgement section_radii found by_rays calibration

@@ -5,11 +5,17 @@ from dataclasses import replace
 import numpy as np
 import pytest
 
-from rotrecon.drawing import cut_sections
-from rotrecon.photometry.drawn import as_wide_as_drawn
+from rotrecon.drawing import CrossSegments, cut_sections
+from rotrecon.photometry.drawn import as_wide_as_drawn, may_be_ball
+from rotrecon.primitives import Frustum, Sphere
 from rotrecon.rays.surfaces import turn_of
 from rotrecon.simulation.ideal_drawing import ideal_drawing
 from tests.pairs import BALL, CAMERA, CONE, LEG, surface_of
+
+
+def segments_of(solid: Frustum | Sphere) -> CrossSegments:
+    drawing = ideal_drawing(solid, CAMERA)
+    return cut_sections(drawing.area, drawing.stroke, (CAMERA.width, CAMERA.height))
 
 
 @pytest.mark.parametrize("tilt", [-0.9, 0.0, 0.9])
@@ -20,8 +26,15 @@ def test_the_true_size_is_as_wide_as_it_is_drawn_however_it_lies_and_a_fifth_mor
     axis = np.array([0.3, np.cos(tilt), np.sin(tilt)])
     place[:3, :3] = turn_of(axis / np.linalg.norm(axis), -place[:3, 3]).T
     solid = shape.moved(place)
-    drawing = ideal_drawing(solid, CAMERA)
-    segments = cut_sections(drawing.area, drawing.stroke, (CAMERA.width, CAMERA.height))
+    segments = segments_of(solid)
     surface = surface_of(solid)
     assert as_wide_as_drawn(surface, CAMERA, segments, 0.15)
     assert not as_wide_as_drawn(replace(surface, radius_m=1.25 * surface.radius_m), CAMERA, segments, 0.15)
+
+
+@pytest.mark.parametrize(("shape", "may"), [(BALL, True), (LEG, False)], ids=["ball", "leg"])
+def test_what_is_drawn_much_longer_than_wide_is_no_ball(shape, may):
+    place = np.eye(4)
+    place[:3, 3] = 0.0, 0.0, 0.4
+    place[:3, :3] = turn_of(np.array([0.6, 0.8, 0.0]), -place[:3, 3]).T
+    assert may_be_ball(segments_of(shape.moved(place))) == may

@@ -2,6 +2,7 @@
 
 from dataclasses import replace
 
+import cv2
 import numpy as np
 import pytest
 from hypothesis import given, settings
@@ -15,8 +16,9 @@ from rotrecon.photometry.agreement import Agreement, shades_of
 from rotrecon.photometry.carrying import Carrier
 from rotrecon.photometry.outlines import CarriedOutline
 from rotrecon.photometry.refinement import Refinement, others_of, refined, sought, weighed
+from rotrecon.photometry.smearing import smeared_apart
 from rotrecon.photometry.splines import SCIPY, SUPPORT_PX, Spline, spline_of
-from rotrecon.photometry.sureness import sigma_by_outline
+from rotrecon.photometry.sureness import outlined, sigma_by_outline
 from rotrecon.photometry.visible import clear_of, outward, seen_too
 from rotrecon.rays.ball import Ball
 from rotrecon.rays.fitting import Outline
@@ -61,6 +63,27 @@ def agreement_of(surface: Surface) -> Agreement:
     grey = painted(surface, CAMERA, np.eye(4)).ravel()[usable]
     shades = shades_of(outward(surface, (rays * surface.trace(rays).depth_m)[:, usable]))
     return Agreement(rays[:, usable], grey, shades, other, CARRIER)
+
+
+@pytest.mark.parametrize("surface", SURFACES, ids=["cylinder", "cone", "ball"])
+def test_pictures_agree_that_are_blurred_along_their_own_pixels(surface):
+    blur_px = 2.0
+    exact = agreement_of(surface)
+    there, _ = CARRIER.carried(exact.rays, surface.meet(exact.rays)[0])
+    size = np.array([[CAMERA.width], [CAMERA.height]])
+    # what is beyond a picture's border is not in its blur
+    inside = [(one > 4 * blur_px) & (one < size - 4 * blur_px) for one in (CAMERA.project(exact.rays.T).T, there)]
+    exact = exact.chosen(np.concatenate(inside).all(axis=0))
+    pictures = [painted(surface, CAMERA, pose) for pose in (np.eye(4), CARRIER.T_view_reference)]
+    first, second = (cv2.GaussianBlur(picture, (0, 0), blur_px) for picture in pictures)
+    place = np.rint(CAMERA.project(exact.rays.T)).astype(int)
+    other = Spline(SCIPY.spline_filter(second), np.zeros(2))
+    grey = first[place[:, 1], place[:, 0]]
+    lacking = smeared_apart(surface, exact.rays, CAMERA, CARRIER, other, blur_px)
+    apart, together = (
+        np.std(replace(exact, grey=one, other=other).predict(surface).residual) for one in (grey, grey - lacking)
+    )
+    assert together < 0.4 * apart
 
 
 def refinement_of(one: Pair, start: Surface, frame=None) -> Refinement:
@@ -291,3 +314,35 @@ def test_outlines_along_the_line_between_the_cameras_tell_no_size():
     across, along = sigma_m
     assert across < 0.01 * 0.03
     assert along > 0.1 * 0.03
+
+
+@pytest.mark.parametrize("wrong_px", [0.0, 3.0])
+def test_outlines_that_lie_apart_tell_no_size(wrong_px):
+    carrier = Carrier(CAMERA, turned(ASIDE))
+    surface = Lateral(MIDDLE, turn_of(np.array([0.0, 1.0, 0.0]), -MIDDLE), 0.03, 0.0, CAMERA.focal_px, tapers=False)
+    free = np.ones(5, dtype=np.bool_)
+    wider = replace(carrier.surface(surface), radius_m=0.03 + wrong_px * MIDDLE[2] / CAMERA.focal_px)
+    seen = outline_of(surface, CAMERA.focal_px)
+    other = CarriedOutline(outline_of(wider, CAMERA.focal_px), carrier)
+    assert sigma_by_outline(surface, [seen, other], free, 0.2) < 0.01 * 0.03
+    assert outlined(surface, [seen, other], free, 0.2) == (wrong_px == 0.0)
+
+
+def test_an_arc_of_a_ball_tells_no_size():
+    ball, free = Ball(MIDDLE, 0.05, CAMERA.focal_px), np.ones(4, dtype=np.bool_)
+    carrier = Carrier(CAMERA, turned(ASIDE))
+    both = [
+        outline_of(ball, CAMERA.focal_px),
+        CarriedOutline(outline_of(carrier.surface(ball), CAMERA.focal_px), carrier),
+    ]
+    assert outlined(ball, both, free, 0.1)
+    assert not outlined(ball, [one.chosen(np.arange(len(one)) < len(one) // 3) for one in both], free, 0.1)
+    assert not outlined(ball, [], free, 0.1)
+
+
+@pytest.mark.parametrize("seed", [1, 2])
+def test_a_plain_ball_is_as_wide_as_its_outlines(seed):
+    one = pair(BALL, "plain", seed)
+    found = refinement_of(one, off(one.surface, 0.02))
+    assert found.held
+    assert found.climbed.surface.size_m == pytest.approx(one.surface.size_m, rel=0.01)

@@ -49,7 +49,7 @@ class Agreement:
     rays: Rays
     """(3, N) of the reference camera."""
     grey: Floats
-    """(N,) of its picture, there."""
+    """(N,) of its picture, there, as if it were blurred along the other's pixels; see `smeared_apart`."""
     shades: Floats
     """(T, N) how light that comes back may differ between the views, each of about 1; see `shades_of`."""
     other: Spline

@@ -37,6 +37,10 @@ class Carrier:
         pose, K = np.ascontiguousarray(self.T_view_reference), np.ascontiguousarray(self.camera.K)
         return _carried(np.ascontiguousarray(rays), np.ascontiguousarray(depth_m), pose, K)
 
+    def back(self, reference: PinholeCamera) -> "Carrier":
+        """The reference camera, as it stands to the other one."""
+        return Carrier(reference, inverse(self.T_view_reference))
+
     def surface(self, surface: Surface) -> Surface:
         """A surface of the reference camera's coordinates in the other camera's.
 

@@ -6,6 +6,7 @@ from dataclasses import dataclass, replace
 import numpy as np
 
 from rotrecon.arrays import Bools, Floats
+from rotrecon.photometry.contest import CONTESTED, contest
 from rotrecon.photometry.matches import Match, Other, matches_of
 from rotrecon.photometry.outlines import CarriedOutline, Edge, outline_in
 from rotrecon.photometry.sharpening import Sharpened, sharpened
@@ -51,6 +52,8 @@ class Climbed:
     edges: tuple[Edge, ...]
     sharpened: Sharpened
     """Depth round the surface as the pictures have it."""
+    contested: bool = False
+    """Whether outlines and texture speak against each other wherever the outlines are sought."""
 
     def credit(self, surface: Surface, sigma: float, share: float, *, by_edges: bool) -> float:
         """How much of what was compared a surface explains, in half a likelihood's logarithm.
@@ -79,11 +82,15 @@ def climb(start: Surface, free: Bools, sigma: float, scene: Scene, others: tuple
     """
     patch, units = scene.patch, start.units(scene.length_m)
     surface = sought = start
-    edges = edges_of(surface, scene, others)
+    # the outline in the picture from farthest away is enough to find the way
+    far = max(others, key=lambda other: float(np.linalg.norm(other.carrier.center_m)))
+    edges = edges_of(surface, scene, (far,))
     pixels, by_depth, matches = np.zeros(0, dtype=np.bool_), 0.0, tuple[Match, ...]()
-    for loss, most in ROUNDS:
-        if moved_px(sought, surface, patch, others) > SOUGHT_AGAIN_PX:
+    for number, (loss, most) in enumerate(ROUNDS):
+        if number and moved_px(sought, surface, patch, others) > SOUGHT_AGAIN_PX:
             sought, edges = surface, edges_of(surface, scene, others)
+        elif number:
+            edges += edges_in(tuple(other for other in others if other is not far), sought, scene)
         pixels, by_depth = _pixels(surface, patch, sigma)
         matches = matches_of(surface, patch, pixels, others, most)
         if not matches and not edges:
@@ -94,7 +101,36 @@ def climb(start: Surface, free: Bools, sigma: float, scene: Scene, others: tuple
         matches = tuple(replace(match, sigma=DISTRUST * match.sigma) for match in matches)
         surface = _agreeing(surface, matches, edges, tukey, free, units)
         sharp = sharpened(surface, patch, pixels, matches)
+    elif edges and contest(surface, matches, free, units) > CONTESTED:
+        return _let_go(
+            Climbed(start, surface, free, pixels, by_depth, matches, tuple(edges), sharp), sigma, scene, others
+        )
     return Climbed(start, surface, free, pixels, by_depth, matches, tuple(edges), sharp)
+
+
+def _let_go(held: Climbed, sigma: float, scene: Scene, others: tuple[Other, ...]) -> Climbed:
+    """Where texture has a surface that edges drew elsewhere, with the edges there if they agree to it."""
+    patch, free, units = scene.patch, held.free, held.start.units(scene.length_m)
+    surface = _agreeing(held.surface, held.matches, (), tukey, free, units)
+    edges = edges_of(surface, scene, others)
+    pixels, by_depth = _pixels(surface, patch, sigma)
+    matches = matches_of(surface, patch, pixels, others, ROUNDS[-1][1])
+    if not matches:
+        return replace(held, contested=True)
+    together = _agreeing(surface, matches, edges, tukey, free, units)
+    contested = contest(together, matches, free, units) > CONTESTED
+    if contested:
+        together, edges = _agreeing(surface, matches, (), tukey, free, units), []
+    sharp = sharpened(together, patch, pixels, matches)
+    return Climbed(held.start, together, free, pixels, by_depth, matches, tuple(edges), sharp, contested)
+
+
+def again(climbed: Climbed, scene: Scene) -> Climbed:
+    """Where a surface goes on to with the pixels and the edges that are known."""
+    units = climbed.surface.units(scene.length_m)
+    surface = _agreeing(climbed.surface, climbed.matches, climbed.edges, tukey, climbed.free, units)
+    sharp = sharpened(surface, scene.patch, climbed.pixels, climbed.matches)
+    return replace(climbed, surface=surface, sharpened=sharp)
 
 
 def _agreeing(
@@ -115,14 +151,21 @@ def _pixels(surface: Surface, patch: Patch, sigma: float) -> tuple[Bools, float]
 
 
 def edges_of(surface: Surface, scene: Scene, others: tuple[Other, ...]) -> list[Edge]:
-    """The outline in all pictures; none of a ball, whose edge is seen too far inside where it is the brighter side."""
-    if isinstance(surface, Ball):
-        return []
+    """The outline in all pictures."""
     own = seen_outline(surface, scene.patch, scene.segments, scene.length_m).edges
-    rays = scene.patch.rays[:, scene.patch.kept]
-    points = (rays * surface.meet(rays)[0]).T
-    low, high = np.percentile(surface.heights(points), [1, 99])
-    edges: list[Edge] = [] if own is None else [own]
+    return [*(() if own is None else (own,)), *edges_in(others, surface, scene)]
+
+
+def edges_in(others: tuple[Other, ...], surface: Surface, scene: Scene) -> list[Edge]:
+    """The outline in some other pictures."""
+    if not others:
+        return []
+    low, high = 0.0, 0.0
+    if not isinstance(surface, Ball):
+        rays = scene.patch.rays[:, scene.patch.kept]
+        points = (rays * surface.meet(rays)[0]).T
+        low, high = np.percentile(surface.heights(points), [1, 99])
+    edges: list[Edge] = []
     for other in others:
         seen = outline_in(other.view, other.carrier, surface, scene.patch, (float(low), float(high))).edges
         if seen is not None:

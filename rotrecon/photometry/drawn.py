@@ -18,6 +18,8 @@ DRAWN_SHARE, DRAWN_PX = 0.12, 2.5
 """Half widths may be off the drawing's by this share or so many px before other starts are tried."""
 WIDEST = 95.0
 """Percentile of the widths of something that stands for where it is widest."""
+LONGEST_BALL = 1.5
+"""Lengths of an area over its width, at most, of what may be a ball: a steady hand draws as long as wide."""
 LEAST_HALF_WIDTH_PX = 3.0
 """Of what an area may be drawn round."""
 
@@ -41,6 +43,12 @@ def drawn(shape: Shape, patch: Patch, segments: CrossSegments, distance_m: float
     tapers = shape == "cone"
     turn = turn_of(along / np.linalg.norm(along), -center)
     return Lateral(center, turn, radius_m, slope if tapers else 0.0, patch.focal_px, tapers)
+
+
+def may_be_ball(segments: CrossSegments) -> bool:
+    """Whether what is drawn is not too long for a ball that is as wide."""
+    rows, _, half_px = _sections(segments)
+    return float(np.ptp(rows)) < LONGEST_BALL * 2 * float(half_px.max() + DRAWN_MARGIN_PX)
 
 
 def as_wide_as_drawn(surface: Surface, camera: PinholeCamera, segments: CrossSegments, length_m: float) -> bool:

@@ -8,15 +8,15 @@ import numpy as np
 from rotrecon.arrays import Floats, freeze
 from rotrecon.frame import Frame
 from rotrecon.photometry.carrying import carrier_of
-from rotrecon.photometry.climbing import DEPTH_SHARE, PLAIN, Climbed, climb, moved_px
-from rotrecon.photometry.drawn import as_wide_as_drawn, drawn
+from rotrecon.photometry.climbing import DEPTH_SHARE, PLAIN, SOUGHT_AGAIN_PX, Climbed, again, climb, moved_px
+from rotrecon.photometry.drawn import as_wide_as_drawn, drawn, may_be_ball
 from rotrecon.photometry.matches import FEWEST_PIXELS, Other
 from rotrecon.photometry.scanning import TILTS_RAD, scanned
-from rotrecon.photometry.sureness import covariance_of, sigma_by_outline
+from rotrecon.photometry.sureness import covariance_of, outlined
 from rotrecon.photometry.visible import clear_of
-from rotrecon.rays.ball import Ball
 from rotrecon.rays.correlation import Likeness
 from rotrecon.rays.hypotheses import Held, Scene
+from rotrecon.rays.lateral import Lateral
 from rotrecon.rays.ray_fit import RayFit, Sight, predicted
 from rotrecon.rays.robust import PARAMETERS, Ranked
 from rotrecon.rays.surfaces import Surface
@@ -26,18 +26,18 @@ from rotrecon.turned.turned import Turned
 SHARP_SHARE = 0.3
 """Of the pixels that a fit rests on, how many must have a depth from the pictures to take their place."""
 FARTHEST_PX = 4.0
-"""Pictures are matched to a fraction of a pixel; a surface that moves by more has lost its way."""
+"""Pictures are matched to a fraction of a pixel; a surface that moves by more has lost its way, but for a plain one,
+whose depth is anyhow that of its shading."""
 AGREEING_SHARE = 0.75
 """Of the pixels, how many must agree in brightness for a surface to be where it is said to be."""
 UNSURE = 0.1
 """Standard error of the radius over the radius of a fit that is no start."""
 TEXTURED = 0.3
-"""Of an object's pixels, how many must have a depth from the pictures for these to say what shape it has."""
-UNTEXTURED_DOUBT, UNTEXTURED_BALL_DOUBT, TEXTURE_HOLDS = 0.015, 0.03, 0.1
-"""Standard error of the radius, over the radius, that outline and shading of a plain object leave, and shading alone
-that of a ball; and the share of textured pixels at which nothing of it is left."""
-OUTLINE_TELLS = 0.02
-"""Largest standard error of the radius over the radius that outlines may leave of a plain thing."""
+"""Of an object's pixels, how many must have a depth from the pictures for these to say what shape it has, or what size
+where no outline is seen: shading passes for texture on up to a fifth."""
+UNTEXTURED_DOUBT, TEXTURE_HOLDS = 0.015, 0.1
+"""Standard error of the radius, over the radius, that outline and shading of a plain object leave; and the share of
+textured pixels at which nothing of it is left."""
 FULLY_TEXTURED = 0.5
 """Of an object's pixels, how many must have a depth from the pictures to have been enough to match."""
 ALIKE = 5.0
@@ -71,6 +71,8 @@ class Refinement:
     @property
     def doubts(self) -> tuple[str, ...]:
         """Why no tool should rely on it."""
+        if self.climbed.contested:
+            return ("its texture and its outline speak for different sizes; light it better, or take more views",)
         if self.textured > TEXTURED or (self.by_depth and self.climbed.by_depth > DEPTH_SHARE):
             return ()
         return (
@@ -93,13 +95,18 @@ def refined(one: Ranked, scene: Scene, others: tuple[Other, ...]) -> Refinement 
     if not others or fit is None or isinstance(fit.surface, Turned):
         return None
     climbed = climb(fit.surface, fit.free, fit.sigma, scene, others)
-    if climbed is None or not moved_px(fit.surface, climbed.surface, scene.patch, others) < FARTHEST_PX:
+    if climbed is None:
         return None
-    refinement = _finished(one, fit, climbed, scene, by_depth=True)
+    size = fit.surface.size_place
+    near = moved_px(fit.surface, climbed.surface, scene.patch, others) < FARTHEST_PX
+    refinement = _finished(one, fit, climbed, scene, by_depth=near)
+    by_outline = refinement.textured < PLAIN and refinement.held
+    if not near and not by_outline:
+        return None
     as_drawn = as_wide_as_drawn(climbed.surface, scene.patch.camera, scene.segments, scene.length_m)
-    sure = float(np.sqrt(fit.covariance.diagonal()[fit.surface.size_place])) < UNSURE * fit.surface.size_m
+    sure = by_outline or float(np.sqrt(fit.covariance[size, size])) < UNSURE * fit.surface.size_m
     trusted = climbed.agreeing > AGREEING_SHARE and climbed.by_depth > DEPTH_SHARE and sure and as_drawn
-    return replace(refinement, trusted=trusted)
+    return replace(refinement, trusted=trusted, held=refinement.held or (trusted and refinement.textured > PLAIN))
 
 
 def sought(scene: Scene, held: Held, like: RayFit, others: tuple[Other, ...]) -> tuple[Refinement, ...]:
@@ -110,19 +117,30 @@ def sought(scene: Scene, held: Held, like: RayFit, others: tuple[Other, ...]) ->
     known = scene.patch.depth_m[scene.patch.drawn]
     distance_m = float(np.nanmedian(known)) if np.isfinite(known).any() else 1.0
     found: list[Refinement] = []
-    shapes: tuple[Shape, ...] = ("cylinder", "cone", "sphere")
+    shapes: tuple[Shape, ...] = ("cylinder", "cone", "sphere") if may_be_ball(scene.segments) else ("cylinder", "cone")
     for shape in shapes:
-        start = held.limiting(drawn(shape, scene.patch, scene.segments, distance_m))
-        tilts = np.zeros(1) if shape == "sphere" or held.direction is not None else TILTS_RAD
-        start, alike = scanned(start, scene.patch, clear_of(start, scene.patch), others[0], tilts)
-        if alike < LEAST_CORRELATION:
-            continue
-        climbed = climb(start, held.free(start), like.sigma, scene, others)
+        climbed = _widened(found[0].climbed, scene, others) if shape == "cone" and found else None
+        if climbed is None:
+            start = held.limiting(drawn(shape, scene.patch, scene.segments, distance_m))
+            tilts = np.zeros(1) if shape == "sphere" or held.direction is not None else TILTS_RAD
+            start, alike = scanned(start, scene.patch, clear_of(start, scene.patch), others[0], tilts)
+            if alike >= LEAST_CORRELATION:
+                climbed = climb(start, held.free(start), like.sigma, scene, others)
         if climbed is not None:
             base = replace(like, free=climbed.free, outlines=())
             one = Ranked(shape, climbed.surface, base, 0.0)
             found.append(_finished(one, base, climbed, scene, by_depth=False))
     return tuple(found)
+
+
+def _widened(cylinder: Climbed, scene: Scene, others: tuple[Other, ...]) -> Climbed | None:
+    """The cone near a cylinder; None where it lies so far that it has to be sought by itself."""
+    surface = cylinder.surface
+    if not isinstance(surface, Lateral):
+        return None
+    start, free = replace(surface, tapers=True), np.append(cylinder.free, True)
+    cone = again(replace(cylinder, surface=start, free=free), scene)
+    return cone if moved_px(surface, cone.surface, scene.patch, others) < SOUGHT_AGAIN_PX else None
 
 
 def weighed(found: tuple[Refinement, ...]) -> tuple[Refinement, ...]:
@@ -177,14 +195,12 @@ def _finished(one: Ranked, fit: RayFit, climbed: Climbed, scene: Scene, *, by_de
         pixels = np.flatnonzero(known).astype(np.int32)
         sight = Sight(guard=float(np.percentile(surface.off_middle(patch.rays[:, pixels]), 95)))
     size = surface.size_place
-    doubt = UNTEXTURED_BALL_DOUBT if isinstance(surface, Ball) else UNTEXTURED_DOUBT
-    left_m = doubt * max(1.0 - textured / TEXTURE_HOLDS, 0.0) * surface.size_m
+    left_m = UNTEXTURED_DOUBT * max(1.0 - textured / TEXTURE_HOLDS, 0.0) * surface.size_m
     covariance[size, size] += left_m**2 * climbed.free[size]
     residual = predicted(replace(patch, depth_m=depth_m), pixels, surface, sight).residual
     told = {"own_covariance": lambda: covariance, "doubt": 0.0}
     better = replace(fit, surface=surface, pixels=pixels, sight=sight, residual=residual, **told)
-    held = textured > PLAIN or (
-        sigma_by_outline(surface, climbed.edges, climbed.free, scene.length_m) < OUTLINE_TELLS * surface.size_m
-    )
+    by_texture = textured > (PLAIN if climbed.edges else TEXTURED)
+    held = by_texture or outlined(surface, climbed.edges, climbed.free, scene.length_m)
     whole = replace(one, surface=surface, fit=better)
     return Refinement(whole, depth_m, climbed, textured, by_depth, trusted=False, held=held)

@@ -83,7 +83,12 @@ def spline_of(image: Bytes, low_px: Floats, high_px: Floats, smoothing_px: float
     low = np.clip(np.floor(low_px - border), 0, size - 1).astype(np.int64)
     high = np.clip(np.ceil(high_px + border), 0, size - 1).astype(np.int64) + 1
     grey = smoothed(image[low[1] : high[1], low[0] : high[0]], smoothing_px)
-    return Spline(SCIPY.spline_filter(grey), low.astype(np.float64))
+    return spline_through(grey, low.astype(np.float64))
+
+
+def spline_through(grey: Floats, corner_px: Floats) -> Spline:
+    """The spline of grey values (h, w) of which the first stands at (2,)."""
+    return Spline(SCIPY.spline_filter(grey), corner_px)
 
 
 def smoothed(image: Bytes, smoothing_px: float) -> Floats:

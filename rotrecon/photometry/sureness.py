@@ -8,15 +8,24 @@ from rotrecon.arrays import Bools, Floats
 from rotrecon.photometry.agreement import Change
 from rotrecon.photometry.matches import Match
 from rotrecon.photometry.outlines import Edge
+from rotrecon.rays.ball import Ball
+from rotrecon.rays.limbs import ARC_POINTS, CIRCLE_ARCS
 from rotrecon.rays.losses import TUKEY, tukey
 from rotrecon.rays.surfaces import Surface
 
-SYSTEMATIC_PX = 0.008
+SYSTEMATIC_PX = 0.005
 """What splines, aliasing and a lens shift one picture against the other by, alike over a part of the object."""
-EDGE_PX = 0.05
+EDGE_PX = 0.04
 """What shading and blur move all edges of an object by, the same way in all pictures."""
 UNKNOWN = 0.3
 """Share of its distance by which a surface may be anywhere that no outline tells of."""
+OUTLINE_TELLS = 0.02
+"""Largest standard error of the radius over the radius that outlines may leave of a plain thing."""
+OUTLINES_APART = 0.03
+"""Share of the radius by which an outline may lie beside the surface that all outlines of a plain thing agree on best:
+more, and one of them is of something else."""
+HALF_OF_BALL = CIRCLE_ARCS * ARC_POINTS // 2
+"""Points of half an outline."""
 PARTS = 4
 """Parts, along each side of the patch, over which that is alike."""
 
@@ -92,6 +101,25 @@ def sigma_by_outline(surface: Surface, edges: Sequence[Edge], free: Bools, lengt
     covariance = np.zeros_like(information)
     covariance[held] = np.linalg.inv(information[held])
     return float(np.sqrt(covariance[surface.size_place, surface.size_place]))
+
+
+def outlined(surface: Surface, edges: Sequence[Edge], free: Bools, length_m: float) -> bool:
+    """Whether outlines alone tell the radius of a surface so long: well enough, alike, and of a ball one of them half.
+
+    What an arc or two of a ball run along may be the border of its light.
+    """
+    seen = max((len(edge) for edge in edges), default=0)
+    if isinstance(surface, Ball) and seen < HALF_OF_BALL:
+        return False
+    told = sigma_by_outline(surface, edges, free, length_m) < OUTLINE_TELLS * surface.size_m
+    return told and off_outline(surface, edges) < OUTLINES_APART
+
+
+def off_outline(surface: Surface, edges: Sequence[Edge]) -> float:
+    """Root mean square distance, over the radius, of the outline that lies farthest from a surface's; 0 for none."""
+    half_width_px = surface.size_m / float(surface.center_m[2]) * surface.focal_px
+    apart_px = [np.sqrt(np.mean(np.square(edge.predict(surface).residual * edge.sigma_px))) for edge in edges]
+    return float(max(apart_px, default=0.0)) / half_width_px
 
 
 def _texture(change: Change) -> Floats:
