@@ -28,8 +28,10 @@ def test_the_true_size_is_as_wide_as_it_is_drawn_however_it_lies_and_a_fifth_mor
     solid = shape.moved(place)
     segments = segments_of(solid)
     surface = surface_of(solid)
-    assert as_wide_as_drawn(surface, CAMERA, segments, 0.15)
-    assert not as_wide_as_drawn(replace(surface, radius_m=1.25 * surface.radius_m), CAMERA, segments, 0.15)
+    assert as_wide_as_drawn(surface, CAMERA, segments, 0.15, 1.0)
+    wider = replace(surface, radius_m=1.25 * surface.radius_m)
+    assert not as_wide_as_drawn(wider, CAMERA, segments, 0.15, 1.0)
+    assert as_wide_as_drawn(wider, CAMERA, segments, 0.15, 3.0)
 
 
 @pytest.mark.parametrize(("shape", "may"), [(BALL, True), (LEG, False)], ids=["ball", "leg"])

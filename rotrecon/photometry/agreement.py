@@ -6,6 +6,7 @@ from functools import cached_property
 import numpy as np
 
 from rotrecon.arrays import Bools, Floats, Indices, freeze
+from rotrecon.compiled import FLOAT, MATRIX, VECTOR, compiled
 from rotrecon.photometry.carrying import Carrier
 from rotrecon.photometry.splines import Spline
 from rotrecon.rays.fitting import UNSCALED, Prediction
@@ -90,33 +91,49 @@ class Agreement:
         return np.concatenate([[self.grey - self.grey.mean(), np.ones(len(self.grey))], self.shades])
 
     @cached_property
+    def _held(self) -> Floats:
+        """(2 + T,) information that there is of each before anything is seen."""
+        return np.concatenate([np.zeros(2), np.full(len(self.shades), SHADE_LEVELS**-2)])
+
+    @cached_property
     def _at_first(self) -> Floats:
         """(2 + T, 2 + T) their covariance where every pixel counts alike."""
-        return self._covariance(self._terms, LARGEST_SIGMA)
-
-    def _covariance(self, weighted: Floats, sigma: float) -> Floats:
-        held = np.concatenate([np.zeros(2), np.full(len(self.shades), SHADE_LEVELS**-2)])
-        information = weighted @ self._terms.T + np.diag(held * sigma**2)
-        # what `pinv` does, in a third of the time
-        values, vectors = np.linalg.eigh(information)
-        told = np.abs(values) > TOLD * np.abs(values).max()
-        return (vectors[:, told] / values[told]) @ vectors[:, told].T
+        return _covariance(self._terms, self._terms, self._held, LARGEST_SIGMA)
 
     def _balanced(self, seen: Floats) -> tuple[Floats, Floats, Floats]:
         """Residual (N,) without gain, offset and shades; their weighted terms (2 + T, N) and covariance."""
-        terms, weighted, inverse = self._terms, self._terms, self._at_first
-        residual = (inverse @ (weighted @ seen)) @ terms - seen
-        for _ in range(BRIGHTNESS_ROUNDS):
-            sigma = max(robust_scale(residual), LEAST_SIGMA)
-            weighted = terms * tukey(residual / sigma)[1]
-            inverse = self._covariance(weighted, sigma)
-            residual = (inverse @ (weighted @ seen)) @ terms - seen
-        return residual, weighted, inverse
+        return _balanced(self._terms, seen, self._held, self._at_first)
 
     def chosen(self, index: Indices | Bools) -> "Agreement":
         """Some of the pixels."""
         rays = np.ascontiguousarray(self.rays[:, index])
         return replace(self, rays=rays, grey=self.grey[index], shades=self.shades[:, index])
+
+
+@compiled(MATRIX, MATRIX, VECTOR, FLOAT)
+def _covariance(weighted: Floats, terms: Floats, held: Floats, sigma: float) -> Floats:
+    """Covariance (k, k) of the amounts of terms (k, N); it is zero in directions that are told nothing."""
+    information = weighted @ terms.T + np.diag(held) * sigma**2
+    values, vectors = np.linalg.eigh(information)
+    least = TOLD * np.abs(values).max()
+    inverse = np.zeros(len(values))
+    for i in range(len(values)):
+        if abs(values[i]) > least:
+            inverse[i] = 1.0 / values[i]
+    return (vectors * inverse) @ vectors.T
+
+
+@compiled(MATRIX, VECTOR, VECTOR, MATRIX)
+def _balanced(terms: Floats, seen: Floats, held: Floats, at_first: Floats) -> tuple[Floats, Floats, Floats]:
+    """See `Agreement._balanced`."""
+    residual = (at_first @ (terms @ seen)) @ terms - seen
+    weighted, inverse = terms.copy(), at_first.copy()
+    for _ in range(BRIGHTNESS_ROUNDS):
+        sigma = max(robust_scale(residual), LEAST_SIGMA)
+        weighted = terms * tukey(residual / sigma)[1]
+        inverse = _covariance(weighted, terms, held, sigma)
+        residual = (inverse @ (weighted @ seen)) @ terms - seen
+    return residual, weighted, inverse
 
 
 def shades_of(normals: Floats) -> Floats:

@@ -51,8 +51,13 @@ def may_be_ball(segments: CrossSegments) -> bool:
     return float(np.ptp(rows)) < LONGEST_BALL * 2 * float(half_px.max() + DRAWN_MARGIN_PX)
 
 
-def as_wide_as_drawn(surface: Surface, camera: PinholeCamera, segments: CrossSegments, length_m: float) -> bool:
-    """Whether the outline of a surface, beside a stroke along `length_m` of it, is as wide as what is drawn."""
+def as_wide_as_drawn(
+    surface: Surface, camera: PinholeCamera, segments: CrossSegments, length_m: float, leeway: float
+) -> bool:
+    """Whether the outline of a surface, beside a stroke along `length_m` of it, is as wide as what is drawn.
+
+    `leeway` is how many times the usual it may be off.
+    """
     if isinstance(surface, Ball):
         part, seen_px = WIDEST, np.array([surface.radius_m / surface.center_m[2] * camera.focal_px])
     else:
@@ -60,7 +65,7 @@ def as_wide_as_drawn(surface: Surface, camera: PinholeCamera, segments: CrossSeg
     if len(seen_px) == 0:
         return False
     drawn_px = float(np.percentile(_sections(segments)[2], part))
-    return abs(float(np.median(seen_px)) - drawn_px) < max(DRAWN_SHARE * drawn_px, DRAWN_PX)
+    return abs(float(np.median(seen_px)) - drawn_px) < leeway * max(DRAWN_SHARE * drawn_px, DRAWN_PX)
 
 
 def _half_outline_px(surface: Lateral, camera: PinholeCamera, segments: CrossSegments, length_m: float) -> Floats:

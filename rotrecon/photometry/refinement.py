@@ -1,6 +1,7 @@
 """A shape fitted to matched depth, refined against the pictures that the depth comes from."""
 
 from dataclasses import dataclass, replace
+from functools import partial
 from operator import itemgetter
 
 import numpy as np
@@ -38,6 +39,8 @@ where no outline is seen: shading passes for texture on up to a fifth."""
 UNTEXTURED_DOUBT, TEXTURE_HOLDS = 0.015, 0.1
 """Standard error of the radius, over the radius, that outline and shading of a plain object leave; and the share of
 textured pixels at which nothing of it is left."""
+OUTLINED_LEEWAY = 2.0
+"""Times as far as usual the drawing may be off that outlines in all pictures contradict."""
 FULLY_TEXTURED = 0.5
 """Of an object's pixels, how many must have a depth from the pictures to have been enough to match."""
 ALIKE = 5.0
@@ -103,7 +106,8 @@ def refined(one: Ranked, scene: Scene, others: tuple[Other, ...]) -> Refinement 
     by_outline = refinement.textured < PLAIN and refinement.held
     if not near and not by_outline:
         return None
-    as_drawn = as_wide_as_drawn(climbed.surface, scene.patch.camera, scene.segments, scene.length_m)
+    leeway = OUTLINED_LEEWAY if by_outline else 1.0
+    as_drawn = as_wide_as_drawn(climbed.surface, scene.patch.camera, scene.segments, scene.length_m, leeway)
     sure = by_outline or float(np.sqrt(fit.covariance[size, size])) < UNSURE * fit.surface.size_m
     trusted = climbed.agreeing > AGREEING_SHARE and climbed.by_depth > DEPTH_SHARE and sure and as_drawn
     return replace(refinement, trusted=trusted, held=refinement.held or (trusted and refinement.textured > PLAIN))
@@ -182,25 +186,39 @@ def _finished(one: Ranked, fit: RayFit, climbed: Climbed, scene: Scene, *, by_de
     patch, surface = scene.patch, climbed.surface
     sharp = climbed.sharpened
     depth_m, known, textured = sharp.depth_m, sharp.known, sharp.textured
-    matches = tuple(zip(climbed.matches, sharp.changes, strict=True))
-    covariance = covariance_of(surface, matches, climbed.edges, climbed.free, patch.shape)
     if not by_depth:
         # what was matched is known to be wrong; without texture, what agrees is where the surface says it is
         seen_m, hit = surface.meet(patch.rays)
         there = known if textured > TEXTURED else known | sharp.agreeing
         depth_m = np.where(there & ~known, seen_m, np.where(hit & ~known, np.nan, depth_m))
-        fit = replace(fit, pixels=np.flatnonzero(there).astype(np.int32), sigma=1.0, likeness=Likeness(0.0, 0.0))
+        pixels = np.flatnonzero(there).astype(np.int32)
+        fit = replace(fit, pixels=pixels, sight=Sight(), sigma=1.0, likeness=Likeness(0.0, 0.0))
     pixels, sight = fit.pixels, fit.sight
     if known.sum() > max(SHARP_SHARE * len(pixels), FEWEST_PIXELS):
         pixels = np.flatnonzero(known).astype(np.int32)
         sight = Sight(guard=float(np.percentile(surface.off_middle(patch.rays[:, pixels]), 95)))
-    size = surface.size_place
-    left_m = UNTEXTURED_DOUBT * max(1.0 - textured / TEXTURE_HOLDS, 0.0) * surface.size_m
-    covariance[size, size] += left_m**2 * climbed.free[size]
     residual = predicted(replace(patch, depth_m=depth_m), pixels, surface, sight).residual
-    told = {"own_covariance": lambda: covariance, "doubt": 0.0}
-    better = replace(fit, surface=surface, pixels=pixels, sight=sight, residual=residual, **told)
+    better = replace(
+        fit,
+        surface=surface,
+        pixels=pixels,
+        sight=sight,
+        residual=residual,
+        own_covariance=partial(_covariance, climbed, patch.shape),
+        doubt=0.0,
+    )
     by_texture = textured > (PLAIN if climbed.edges else TEXTURED)
     held = by_texture or outlined(surface, climbed.edges, climbed.free, scene.length_m)
     whole = replace(one, surface=surface, fit=better)
     return Refinement(whole, depth_m, climbed, textured, by_depth, trusted=False, held=held)
+
+
+def _covariance(climbed: Climbed, shape: tuple[int, int]) -> Floats:
+    """Of a surface's parameters (k, k), with what outline and shading of a plain object leave open."""
+    surface, sharp = climbed.surface, climbed.sharpened
+    matches = tuple(zip(climbed.matches, sharp.changes, strict=True))
+    covariance = covariance_of(surface, matches, climbed.edges, climbed.free, shape)
+    left_m = UNTEXTURED_DOUBT * max(1.0 - sharp.textured / TEXTURE_HOLDS, 0.0) * surface.size_m
+    size = surface.size_place
+    covariance[size, size] += left_m**2 * climbed.free[size]
+    return covariance

@@ -71,4 +71,5 @@ def sharpened(surface: Surface, patch: Patch, among: Bools, matches: tuple[Match
 
 def _windowed(image: Floats) -> Floats:
     """Means (h, w) over the window of an image (h, w)."""
-    return np.asarray(cv2.GaussianBlur(image, (0, 0), WINDOW_PX, borderType=cv2.BORDER_CONSTANT), dtype=np.float64)
+    rough = image.astype(np.float32)
+    return np.asarray(cv2.GaussianBlur(rough, (0, 0), WINDOW_PX, borderType=cv2.BORDER_CONSTANT), dtype=np.float64)
