@@ -6,8 +6,9 @@ from typing import Literal
 from rotrecon.arrays import Floats
 from rotrecon.outcome import Range
 from rotrecon.primitives import Kind
+from rotrecon.reading import Reading, diameter_mm, widest_mm
 from rotrecon.tool_table import Tool, ToolTable
-from rotrecon.tools import Judged, Reading, diameter_mm, judge, widest_mm
+from rotrecon.tools import Judged, judge
 
 Verdict = Literal["fits", "not sure", "ruled out"]
 

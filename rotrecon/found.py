@@ -15,11 +15,12 @@ from rotrecon.primitives import Primitive
 from rotrecon.rays.hypotheses import Scene
 from rotrecon.rays.ray_fit import RayFit
 from rotrecon.rays.robust import Ranked
+from rotrecon.reading import Reading
 from rotrecon.recognition import candidates_of, intervals_of, is_possible, solid_of
 from rotrecon.reconstruction import Cut, Reconstruction
 from rotrecon.section_radii import SectionRadii
 from rotrecon.soundness import Soundness
-from rotrecon.tools import NoTool, Reading, propose_tool
+from rotrecon.tools import NoTool, propose_tool
 from rotrecon.turned.parts import Part
 
 

@@ -13,9 +13,10 @@ from rotrecon.contact import Contact, Place, contact_on, within
 from rotrecon.envelope import STANDOFF_M, Box, Envelope, envelope_of
 from rotrecon.frame import Frame
 from rotrecon.outcome import Fit
+from rotrecon.reading import diameter_mm
 from rotrecon.reconstruction import Reconstruction
 from rotrecon.tool_table import Tool
-from rotrecon.tools import ToolProposal, diameter_mm
+from rotrecon.tools import ToolProposal
 from rotrecon.workspace import out_of_reach
 
 OWN_SHARE = 0.08

@@ -8,9 +8,10 @@ from rotrecon.drawing import CrossSegments, Drawing
 from rotrecon.frame import Frame
 from rotrecon.outcome import Candidate, Fit, FitFailure
 from rotrecon.primitives import Primitive
+from rotrecon.reading import Reading
 from rotrecon.segmentation import Segmentation
 from rotrecon.settings import Settings
-from rotrecon.tools import NoTool, Reading, ToolProposal
+from rotrecon.tools import NoTool, ToolProposal
 
 
 @dataclass(frozen=True, eq=False)

@@ -9,6 +9,7 @@ ROOT = Path(__file__).parents[1]
 FORBIDDEN = {"app", "viser", "fastapi", "starlette", "uvicorn", "typer"}
 GIVEN = """
     errors files arrays compiled camera primitives contact workspace tool_table settings frame drawing outcome noise
+    reading
 """.split()
 MATCHED = """
     stereo.rectification stereo.canvas stereo.disparity_noise stereo.matching stereo.carrying stereo.limits
@@ -20,7 +21,7 @@ PROPOSED_AXIS = """
     stroke.axis_direction
 """.split()
 SEGMENTED = """
-    segmentation circles axis tools reconstruction sections.section_cuts
+    segmentation circles axis objections tools reconstruction sections.section_cuts
 """.split()
 BY_SECTIONS = """
     sections.radii sections.section_fit sections.by_sections
@@ -55,13 +56,13 @@ ORDER = [*GIVEN, *MATCHED, *PROPOSED_AXIS, *SEGMENTED, *BY_SECTIONS, *BY_RAYS, "
 STAGES = set(
     """
     workspace drawing segmentation circles sections.radii noise stroke.planes rays.correlation
-    edges.edge_lines rays.starts tools
+    edges.edge_lines rays.starts objections
 """.split()
 )
 """They know the types, and not each other."""
 TYPES = set(
     """
-    arrays compiled camera primitives contact settings frame drawing outcome tool_table
+    arrays compiled camera primitives contact settings frame drawing outcome reading tool_table
     rays.traces rays.lateral_rays rays.lateral rays.ball_rays rays.ball rays.surfaces rays.patch edges.line_loops
 """.split()
 )

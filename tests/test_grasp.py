@@ -16,11 +16,12 @@ from rotrecon.envelope import BODY_M, STANDOFF_M, Box, envelope_of
 from rotrecon.grasp import Grasp, clearances_of, grasp_of, points_in, shown_tool
 from rotrecon.outcome import Fit
 from rotrecon.primitives import Primitive, Sphere
+from rotrecon.reading import Reading
 from rotrecon.reconstruct import reconstruct
 from rotrecon.reconstruction import Reconstruction
 from rotrecon.settings import Settings
 from rotrecon.tool_table import Tool, default_tools
-from rotrecon.tools import Reading, ToolProposal, propose_tool
+from rotrecon.tools import ToolProposal, propose_tool
 from rotrecon.workspace import Workspace
 from tests.exact import cylinder, drawing_along, exact_frame
 from tests.solids import ALONG, CAMERA_M, CENTER_M, pipe

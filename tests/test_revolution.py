@@ -16,10 +16,11 @@ from rotrecon.camera import PinholeCamera, transform
 from rotrecon.curves import curves_of
 from rotrecon.mesh import FACETS, as_mesh
 from rotrecon.primitives import Frustum, Primitive, Revolution, Sphere, basis_across, in_words
+from rotrecon.reading import Reading
 from rotrecon.reconstruct import reconstruct
 from rotrecon.settings import Settings
 from rotrecon.tool_table import Tool
-from rotrecon.tools import NoTool, Reading, ToolProposal, propose_tool
+from rotrecon.tools import NoTool, ToolProposal, propose_tool
 from tests.exact import cylinder, drawing_along, exact_frame, measured
 from tests.solids import ALONG, CAMERA_M, CENTER_M
 

@@ -9,8 +9,9 @@ from hypothesis import assume, given
 from hypothesis import strategies as st
 
 from rotrecon.primitives import Sphere
+from rotrecon.reading import Reading
 from rotrecon.tool_table import Tool
-from rotrecon.tools import NoTool, Reading, ToolProposal, propose_tool
+from rotrecon.tools import NoTool, ToolProposal, propose_tool
 from tests.solids import ALONG, CAMERA_M, CENTER_M, pipe
 
 Simple = Literal["cylinder", "rod", "cone", "sphere"]

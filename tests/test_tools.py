@@ -7,9 +7,11 @@ import numpy as np
 import pytest
 
 from rotrecon.clearance import clearances
+from rotrecon.objections import STRAIGHT_RAD
 from rotrecon.primitives import Frustum, Kind, Sphere
+from rotrecon.reading import Reading
 from rotrecon.tool_table import Tool, ToolTable, default_tools
-from rotrecon.tools import STRAIGHT_RAD, WHICH_KIND, NoTool, Reading, ToolProposal, propose_tool
+from rotrecon.tools import WHICH_KIND, NoTool, ToolProposal, propose_tool
 from tests.solids import ALONG, CAMERA_M, CENTER_M, pipe
 
 

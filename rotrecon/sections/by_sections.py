@@ -5,12 +5,13 @@ from dataclasses import replace
 from rotrecon.arrays import Floats
 from rotrecon.axis import FittedAxis, SpaceSections
 from rotrecon.outcome import FailureReason, Fit, FitFailure
+from rotrecon.reading import Reading
 from rotrecon.reconstruction import Cut, Reconstruction
 from rotrecon.sections.radii import SHAPES, Shape, choose, fit_radii, rank
 from rotrecon.sections.section_cuts import cut_until_settled, without
 from rotrecon.sections.section_fit import as_candidates, fit_solid, why_no_axis
 from rotrecon.settings import Settings
-from rotrecon.tools import NoTool, Reading, ToolProposal, propose_tool
+from rotrecon.tools import NoTool, ToolProposal, propose_tool
 
 
 def by_sections(segmented: Reconstruction) -> Reconstruction:
