@@ -28,8 +28,9 @@ CHANCE, SUSPICION = 3.5, 1.0
 """Standard deviations by which inner depths may be explained worse, and by which a size may differ from theirs."""
 CORRECTION_DOUBT = 0.25
 """Standard deviation of what one way to a size changes, over the change: neither way is without error."""
-BALL_DOUBT = 0.5
-"""The same of a ball, whose panels and shadows run along its outline (measured on simulated stereo)."""
+CONE_DOUBT, BALL_DOUBT = 0.1, 0.9
+"""The same of a cone, which its outline holds by much more than its size, and of a ball, whose panels and shadows run
+along its outline (both measured on simulated stereo)."""
 WINDOWS_AT_MOST = 1.3
 """Times as rough as the inner ones, at most, windows alone make all depths (measured on simulated stereo)."""
 DECISIVE = 1.03
@@ -133,9 +134,15 @@ def _as_large(fit: RayFit, inner: RayFit) -> bool:
 
 def doubting(fit: RayFit, other: RayFit) -> RayFit:
     """A fit that is less sure of its size by a share of its difference from another, which believes other things."""
-    apart, share = np.zeros(len(fit.free)), BALL_DOUBT if isinstance(fit.surface, Ball) else CORRECTION_DOUBT
-    apart[fit.surface.size_place :] = share * (_size(fit.surface) - _size(other.surface))
+    apart = np.zeros(len(fit.free))
+    apart[fit.surface.size_place :] = _doubt(fit.surface) * (_size(fit.surface) - _size(other.surface))
     return replace(fit, doubt=fit.doubt + np.outer(apart, apart))
+
+
+def _doubt(surface: Surface) -> float:
+    if isinstance(surface, Ball):
+        return BALL_DOUBT
+    return CONE_DOUBT if surface.tapers else CORRECTION_DOUBT
 
 
 def _size(surface: Surface) -> Floats:
