@@ -12,7 +12,7 @@ from rotrecon.photometry.outlines import CarriedOutline, Edge, outline_in
 from rotrecon.photometry.sharpening import Sharpened, sharpened
 from rotrecon.photometry.visible import clear_of, shown
 from rotrecon.rays.ball import Ball
-from rotrecon.rays.fitting import Measurement, refine
+from rotrecon.rays.fitting import Measurement, Outline, refine
 from rotrecon.rays.hypotheses import Scene
 from rotrecon.rays.limbs import seen_outline
 from rotrecon.rays.losses import TUKEY, Loss, cauchy, tukey
@@ -33,6 +33,8 @@ PLAIN = 0.05
 """Share of a surface's pixels with texture below which its outline is believed, and brightness hardly."""
 DISTRUST = 5.0
 """By how much larger the error of brightness is taken there: the light near limbs is not what pixels make of it."""
+VAGUE_PX = 2.0
+"""Standard deviation of an edge beyond which it is none of a ball's: those of balls before a wall have 0.3 to 1.4."""
 NOTHING = TUKEY**2 / 6
 """Cost of a measurement that a surface does not explain."""
 
@@ -153,7 +155,12 @@ def _pixels(surface: Surface, patch: Patch, sigma: float) -> tuple[Bools, float]
 def edges_of(surface: Surface, scene: Scene, others: tuple[Other, ...]) -> list[Edge]:
     """The outline in all pictures."""
     own = seen_outline(surface, scene.patch, scene.segments, scene.length_m).edges
-    return [*(() if own is None else (own,)), *edges_in(others, surface, scene)]
+    return [*(() if own is None or _is_vague(own, surface) else (own,)), *edges_in(others, surface, scene)]
+
+
+def _is_vague(edges: Outline, surface: Surface) -> bool:
+    """Whether the outline of a ball is so faint that its edges, which err alike all round, would only mislead."""
+    return isinstance(surface, Ball) and float(np.median(edges.sigma_px)) > VAGUE_PX
 
 
 def edges_in(others: tuple[Other, ...], surface: Surface, scene: Scene) -> list[Edge]:
@@ -168,7 +175,7 @@ def edges_in(others: tuple[Other, ...], surface: Surface, scene: Scene) -> list[
     edges: list[Edge] = []
     for other in others:
         seen = outline_in(other.view, other.carrier, surface, scene.patch, (float(low), float(high))).edges
-        if seen is not None:
+        if seen is not None and not _is_vague(seen, surface):
             edges.append(CarriedOutline(seen, other.carrier))
     return edges
 
