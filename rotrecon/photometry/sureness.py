@@ -15,7 +15,7 @@ from rotrecon.rays.surfaces import Surface
 
 SYSTEMATIC_PX = 0.005
 """What splines, aliasing and a lens shift one picture against the other by, alike over a part of the object."""
-EDGE_PX = 0.04
+EDGE_PX = 0.03
 """What shading and blur move all edges of an object by, the same way in all pictures."""
 UNKNOWN = 0.3
 """Share of its distance by which a surface may be anywhere that no outline tells of."""
