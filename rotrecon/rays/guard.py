@@ -100,8 +100,8 @@ def _by_differences(whole: RayFit, task: Task) -> RayFit | None:
     for most, rounds in ((SCOUTS, 1), (MOST_DIFFERENCES, FINE_ROUNDS)):
         fit = by_differences(fit, task.patch, task.units, most, rounds)
         apart = _size(fit.surface) - _size(whole.surface)
-        inverse = np.linalg.pinv(plain + fit.covariance[sizes, sizes], hermitian=True)
-        if not apart @ inverse @ apart < BORNE_OUT**2:
+        both = plain + fit.covariance[sizes, sizes]
+        if not np.isfinite(both).all() or apart @ np.linalg.pinv(both, hermitian=True) @ apart > BORNE_OUT**2:
             return None
     return fit if np.linalg.det(fit.covariance[sizes, sizes]) < TELLS_MORE**2 * np.linalg.det(plain) else None
 
