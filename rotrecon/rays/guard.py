@@ -101,7 +101,10 @@ def _by_differences(whole: RayFit, task: Task) -> RayFit | None:
         fit = by_differences(fit, task.patch, task.units, most, rounds)
         apart = _size(fit.surface) - _size(whole.surface)
         both = plain + fit.covariance[sizes, sizes]
-        if not np.isfinite(both).all() or apart @ np.linalg.pinv(both, hermitian=True) @ apart > BORNE_OUT**2:
+        # two that end at the same limit have not been compared
+        if not apart.any() or not np.isfinite(both).all():
+            return None
+        if apart @ np.linalg.pinv(both, hermitian=True) @ apart > BORNE_OUT**2:
             return None
     return fit if np.linalg.det(fit.covariance[sizes, sizes]) < TELLS_MORE**2 * np.linalg.det(plain) else None
 

@@ -157,7 +157,9 @@ def finds_it_and_replays_it(operator: Operator) -> None:
     tab(operator, "History")
     found = page.get_by_test_id("history").locator("[data-kind=confirmed]")
     expect(found).to_have_count(1)
-    expect(found).to_contain_text(f"{float(operator.value('diameter_mm') or 0):.1f}")
+    said = re.search(r"⌀ ([\d.]+)", found.inner_text())
+    assert said is not None
+    assert float(said[1]) == pytest.approx(float(operator.value("diameter_mm") or 0), abs=0.05)
     number = found.get_attribute("data-entry") or ""
     page.get_by_role("button", name=number, exact=True).click()
     expect(page.get_by_test_id("entry")).to_have_attribute("data-entry", number)
