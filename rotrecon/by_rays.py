@@ -94,20 +94,25 @@ def _find(scene: Scene, held: Held, segmented: Reconstruction) -> Found | FitFai
     better = _followed_along((whole, *(replace(one, cost=one.cost + 1.0) for one in ranked)), whole, scene, settings)
     if isinstance(better, FitFailure) or better.soundness.inlier_share < settings.turned_inlier_share:
         return found
-    return better
+    return found if _interval_over_size(whole) > settings.widest_interval else better
 
 
 def _is_part_only(found: Found | FitFailure, chosen: Ranked, scene: Scene, settings: Settings) -> bool:
     """Whether a cylinder or a cone explains a part of the object along its axis, or all of it badly."""
     if isinstance(found, FitFailure):
         return found.reason == FailureReason.NOT_ROUND
-    low_m, high_m = intervals_of(chosen, 0.0, None).diameter_m
-    if high_m - low_m > settings.certain_interval * (high_m + low_m) / 2:
+    if _interval_over_size(chosen) > settings.certain_interval:
         return True
     assert isinstance(chosen.surface, Lateral)
     low, high = np.percentile(chosen.surface.heights(scene.ridge.points_m), [5, 95])
     covered = min(high, found.ends_m[1]) - max(low, found.ends_m[0])
     return bool(covered < settings.covered_length * (high - low))
+
+
+def _interval_over_size(ranked: Ranked) -> float:
+    """Width of the interval of a shape's diameter over the diameter."""
+    low_m, high_m = intervals_of(ranked, 0.0, None).diameter_m
+    return 2 * (high_m - low_m) / (high_m + low_m)
 
 
 def _followed_along(ranked: tuple[Ranked, ...], chosen: Ranked, scene: Scene, settings: Settings) -> Found | FitFailure:

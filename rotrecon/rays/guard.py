@@ -58,8 +58,10 @@ def settle(surface: Surface, task: Task) -> RayFit | None:
     """The fit to as many depths as agree with the inner ones (Hausman 1978: an efficient estimate is believed while it
     agrees with one that rests on less)."""
     whole = _fit(surface, task, Sight())
-    if whole is None or surface.side > 0 or whole.likeness.alike < MATCHED:
+    if whole is None or surface.side > 0:
         return whole
+    if whole.likeness.alike < MATCHED:
+        return _fit(whole.surface, task, Sight(limited=True))
     differenced = _by_differences(whole, task)
     if differenced is not None:
         return differenced

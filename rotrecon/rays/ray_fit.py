@@ -11,6 +11,7 @@ from rotrecon.rays.correlation import Likeness, likeness_of
 from rotrecon.rays.covariance import REPEATING, covariance_of_depths, covariance_of_differences
 from rotrecon.rays.fitting import Depths, MatchedDepths, Measurement, Outlines, Prediction, refine
 from rotrecon.rays.losses import TUKEY, robust_scale, tukey
+from rotrecon.rays.passing import seen_behind
 from rotrecon.rays.patch import Patch
 from rotrecon.rays.surfaces import Surface
 from rotrecon.rays.whitening import whitened
@@ -46,6 +47,8 @@ class Sight:
     """Pixels are left out whose ray passes farther beside the axis than this share of the radius."""
     differences: bool = False
     """Whether depths are compared with their neighbours', so that what these err by too does not count."""
+    limited: bool = False
+    """Whether rays that see what is far behind limit the size."""
 
     @property
     def whole(self) -> bool:
@@ -116,9 +119,14 @@ def fine(
         used = spread(np.arange(len(pixels), dtype=np.int32), HASTY_PIXELS) if hasty else None
         measurements: list[Measurement] = [depths if used is None else depths.chosen(used)]
         measurements += [outline for outline, _ in outlines]
+        weights = [(1.0, outline_share) for _, outline_share in outlines]
+        if sight.limited:
+            limit, border = seen_behind(surface, patch, sigma)
+            measurements += [limit, border]
+            weights += [(1.0, 1.0), (1.0, 1.0 / max(len(border), 1))]
         # those that stand for others have their say
         say = share if used is None else min(share * len(pixels) / len(used), 1.0)
-        weighting = [(sigma, say), *((1.0, outline_share) for _, outline_share in outlines)]
+        weighting = [(sigma, say), *weights]
         surface = refine(surface, measurements, weighting, tukey, free, units, FINE_ITERATIONS).surface
         if abs(surface.size_m - size_m) < SETTLED_SIZE * size_m and not hasty:
             break
