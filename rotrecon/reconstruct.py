@@ -11,7 +11,7 @@ from rotrecon.calibration import with_calibration_error
 from rotrecon.circles import base_points
 from rotrecon.drawing import CrossSegments, Drawing, DrawingError, cut_sections
 from rotrecon.frame import Frame
-from rotrecon.outcome import FitFailure
+from rotrecon.outcome import Fit, FitFailure
 from rotrecon.rays.patch import clear_depth
 from rotrecon.reconstruction import Reconstruction
 from rotrecon.sections.by_sections import by_sections
@@ -20,6 +20,7 @@ from rotrecon.sections.section_fit import why_no_axis
 from rotrecon.segmentation import segment
 from rotrecon.settings import Settings
 from rotrecon.stroke.axis_proposal import propose_axis
+from rotrecon.stroke.correction import corrected
 from rotrecon.workspace import available
 
 THREADS = ThreadpoolController()
@@ -32,6 +33,26 @@ def reconstruct(frame: Frame, drawing: Drawing, settings: Settings) -> Reconstru
     The drawing of the result has an axis, proposed where none was drawn.
     """
     drawing = _with_axis(frame, drawing, settings)
+    result = _measured(frame, drawing, settings)
+    if settings.method == "paper" or not isinstance(result.fit, Fit):
+        return result
+    stroke = corrected(drawing, result.fit, frame.camera)
+    if stroke is None:
+        return result
+    again = _measured(frame, replace(drawing, axis=stroke), settings)
+    return replace(again, drawing=drawing) if _bears_out(again, result.fit) else result
+
+
+def _bears_out(again: Reconstruction, first: Fit) -> bool:
+    """Whether a second measurement found the same kind of thing, and doubts it no more."""
+    if not isinstance(again.fit, Fit) or len(again.fit.doubts) > len(first.doubts):
+        return False
+    kinds = {again.fit.solid.kind, first.solid.kind}
+    return len(kinds) == 1 or kinds == {"cylinder", "rod"}
+
+
+def _measured(frame: Frame, drawing: Drawing, settings: Settings) -> Reconstruction:
+    """All stages along the stroke of a drawing."""
     segments = cut_sections(drawing.area, drawing.stroke, (frame.camera.width, frame.camera.height))
     depth_m, usable = usable_depth(frame, segments)
     if settings.method == "robust":

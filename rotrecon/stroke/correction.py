@@ -1,0 +1,65 @@
+"""A careless stroke, put right: along the axis of what was found with it, over as much of that as the area holds."""
+
+import numpy as np
+
+from rotrecon.arrays import Floats
+from rotrecon.camera import PinholeCamera
+from rotrecon.drawing import Drawing, ObjectAxis
+from rotrecon.outcome import Fit
+from rotrecon.primitives import Sphere
+
+LEAST_COVERED = 0.8
+"""Share of the object's length that a careful stroke covers at least."""
+MOST_BESIDE = 0.1
+"""Widths by which its middle may lie beside the axis."""
+MOST_TURNED_RAD = float(np.deg2rad(4.0))
+"""By which it may be turned."""
+INSET_PX = 1.0
+"""How far it stays inside the object's ends."""
+
+
+def corrected(drawing: Drawing, fit: Fit, camera: PinholeCamera) -> ObjectAxis | None:
+    """The stroke that a careful hand had drawn along a measured solid; None where the drawn one is good enough.
+
+    It never ends before the drawn one: how far an object goes is for the operator to say. A stroke that holds the
+    direction of the axis is left as it is.
+    """
+    if drawing.constraints.direction == "drawn":
+        return None
+    drawn = np.array([drawing.stroke.start_px, drawing.stroke.end_px])
+    found = _along(fit, drawn, camera)
+    length_px = float(np.linalg.norm(found[1] - found[0])) if np.isfinite(found).all() else 0.0
+    if length_px <= 2 * INSET_PX:
+        return None
+    along = (found[1] - found[0]) / length_px
+    offset = (drawn - found[0]) @ np.array([[along[0], -along[1]], [along[1], along[0]]])
+    (first, last), beside_px = offset[:, 0], abs(float(offset[:, 1].mean()))
+    covered = min(last, length_px) - max(first, 0.0)
+    turned_rad = abs(np.arctan2(offset[1, 1] - offset[0, 1], last - first))
+    width_px = 2 * float(fit.solid.radius_at(0.0)) * camera.focal_px / float(fit.solid.center_m[2])
+    if (
+        covered >= LEAST_COVERED * length_px
+        and beside_px <= MOST_BESIDE * width_px
+        and (turned_rad <= MOST_TURNED_RAD or isinstance(fit.solid, Sphere))
+    ):
+        return None
+    ends = np.array([min(first, INSET_PX), max(last, length_px - INSET_PX)])
+    size_px = np.array([camera.width, camera.height]) - 1.0
+    (u0, v0), (u1, v1) = np.clip(found[0] + ends[:, None] * along, 0.0, size_px).tolist()
+    return ObjectAxis((u0, v0), (u1, v1))
+
+
+def _along(fit: Fit, drawn_px: Floats, camera: PinholeCamera) -> Floats:
+    """Start and end (2, 2) in the picture of the line along the middle of a solid's visible side."""
+    solid = fit.solid
+    if isinstance(solid, Sphere):
+        # a ball has no axis but the stroke's
+        middle_px = camera.project(solid.center_m[None])[0]
+        along = (drawn_px[1] - drawn_px[0]) / np.linalg.norm(drawn_px[1] - drawn_px[0])
+        reach_px = solid.radius_m * camera.focal_px / float(solid.center_m[2])
+        return middle_px + np.array([[-reach_px], [reach_px]]) * along
+    toward = -solid.center_m + (solid.center_m @ solid.direction) * solid.direction
+    toward /= np.linalg.norm(toward) * (-1.0 if fit.concave else 1.0)
+    ends_m = np.array(solid.ends)
+    ridge = ends_m[:, None] * solid.direction + solid.radius_at(ends_m)[:, None] * toward
+    return camera.project(solid.center_m + ridge)
