@@ -10,7 +10,7 @@ from numpy.typing import ArrayLike, NDArray
 from rotrecon.arrays import Bools, Bytes, Cloud, Floats, Indices, freeze
 from rotrecon.edges.edge_lines import BEYOND_PX, Line, Stretch, find_line
 from rotrecon.edges.edge_model import Profiles
-from rotrecon.edges.edge_steps import Steps, find_steps
+from rotrecon.edges.edge_steps import SYSTEMATIC_SHARE, Steps, find_steps
 from rotrecon.edges.light import LightSpline
 
 ACROSS_PX = np.array([-5, -4, -3, -2, -1.5, -1, -0.5, 0, 0.5, 1, 1.5, 2, 3, 4, 5])
@@ -52,6 +52,11 @@ class Side:
     """Standard error of its mean offset."""
     blur_px: float
     """Standard deviation of the picture's blur there."""
+
+    @property
+    def alike_px(self) -> float:
+        """Standard deviation of what all its edges err by alike; it is in `sigma_px`."""
+        return SYSTEMATIC_SHARE * self.blur_px
 
     @property
     def trusted(self) -> bool:

@@ -56,18 +56,20 @@ def covariance_of_differences(
     return _sandwich(columns, product, scaled, likeness.independent_share, free, _of_outlines(surface, outlines))
 
 
-def _sandwich(columns: Floats, product: Floats, scaled: Floats, share: float, free: Bools, outlines: Floats) -> Floats:
+def _sandwich(
+    columns: Floats, product: Floats, scaled: Floats, share: float, free: Bools, outlines: tuple[Floats, Floats]
+) -> Floats:
     """The covariance H^-1 M H^-1 (k, k) of errors that are alike (Huber 1967), zero for what is not `free` (k,).
 
     H is the information that was weighted with: of the derivatives (k, N) of residuals (N,), both in sigmas, of which
     a share is independent, and of outlines (k, k). M is the variance of its gradient: J C J' of the derivatives, C
-    being the autocorrelation of errors, is the product; outlines, whose share is known, have their information itself.
+    being the autocorrelation of errors, is the product; `outlines` has what they add to H, and to M.
     """
     weight = tukey(scaled)[1]
     believed = weight > 0
-    information = share * float(_response(scaled[believed]).mean()) * (columns @ columns.T) + outlines
+    information = share * float(_response(scaled[believed]).mean()) * (columns @ columns.T) + outlines[0]
     spread_of_score = float((weight * scaled) @ (weight * scaled)) / max(float(believed.sum()), 1.0)
-    variance = share**2 * spread_of_score * product + outlines
+    variance = share**2 * spread_of_score * product + outlines[1]
     covariance = np.zeros_like(information)
     kept = np.ix_(free, free)
     inverse = np.linalg.pinv(information[kept], hermitian=True)
@@ -100,10 +102,22 @@ def _response(residual: Floats) -> Floats:
     return (1.0 - squared) * (1.0 - 5.0 * squared)
 
 
-def _of_outlines(surface: Surface, outlines: Outlines) -> Floats:
-    """What outlines tell (k, k) of a surface."""
-    total = np.zeros((len(surface.units(1.0)), len(surface.units(1.0))))
+def _of_outlines(surface: Surface, outlines: Outlines) -> tuple[Floats, Floats]:
+    """What outlines tell (k, k) of a surface, and the variance (k, k) of their pull.
+
+    What a stretch errs by alike pulls as one: it shifts the outline, and hardly turns it.
+    """
+    count = len(surface.units(1.0))
+    information, variance = np.zeros((count, count)), np.zeros((count, count))
     for outline, share in outlines:
         prediction = outline.predict(surface)
-        total += share * (prediction.columns * tukey(prediction.residual)[1]) @ prediction.columns.T
-    return total
+        columns, weight = prediction.columns, tukey(prediction.residual)[1]
+        own = np.ones(len(outline))
+        for edges, alike_px in outline.alike:
+            alike = alike_px / outline.sigma_px[edges]
+            own[edges] = np.maximum(1.0 - len(edges) * alike**2, 0.0)
+            pull = columns[:, edges] @ (weight[edges] * alike)
+            variance += share * np.outer(pull, pull)
+        information += share * (columns * weight) @ columns.T
+        variance += share * (columns * (weight * own)) @ columns.T
+    return information, variance

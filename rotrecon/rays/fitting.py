@@ -123,8 +123,10 @@ class Outline:
 
     rays: Rays
     sigma_px: Floats
-    """(N,)"""
+    """(N,) so large that edges taken as independent have what they err by alike together."""
     focal_px: float
+    alike: tuple[tuple[Indices, float], ...] = ()
+    """Edges of one stretch, and the standard deviation, px, of what all of them err by alike."""
 
     def __post_init__(self) -> None:
         freeze(self)
@@ -141,7 +143,7 @@ class Outline:
     def chosen(self, index: Indices | Bools) -> "Outline":
         """Some of the edges."""
         rays = np.ascontiguousarray(self.rays[:, index])
-        return replace(self, rays=rays, sigma_px=self.sigma_px[index])
+        return Outline(rays, self.sigma_px[index], self.focal_px)
 
 
 Outlines = tuple[tuple[Outline, float], ...]

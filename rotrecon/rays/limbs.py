@@ -1,6 +1,6 @@
 """Where the outline of a surface lies in the picture, and where the depth map says the object ends."""
 
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 
 import numpy as np
 
@@ -185,7 +185,10 @@ def edges_at(limbs: Limbs, surface: Surface, patch: Patch) -> SeenOutline:
         return SeenOutline(None, 0)
     place = limbs.point_px[usable] + found.offset_px[usable, None] * limbs.normal_px[usable]
     number = np.searchsorted(np.unique(limbs.side), limbs.side[usable])
-    blur_px = np.array([side.blur_px for side in found.sides])[number]
+    blur_px, alike_px = (np.array([getattr(side, of) for side in found.sides]) for of in ("blur_px", "alike_px"))
     smeared_px = BLUR_DOUBT * np.sqrt(np.maximum(blur_px**2 - PIXEL_BLUR_PX**2, 0.0))
-    sigma_px = np.sqrt(found.sigma_px[usable] ** 2 + np.bincount(number)[number] * smeared_px**2)
-    return SeenOutline(outline_at(place, sigma_px, patch), int(trusted.sum()))
+    sigma_px = np.sqrt(found.sigma_px[usable] ** 2 + np.bincount(number)[number] * smeared_px[number] ** 2)
+    alike_px = np.hypot(alike_px, smeared_px)
+    stretches = [np.flatnonzero(number == each).astype(np.int32) for each in np.unique(number)]
+    alike = tuple((stretch, float(alike_px[number[stretch[0]]])) for stretch in stretches)
+    return SeenOutline(replace(outline_at(place, sigma_px, patch), alike=alike), int(trusted.sum()))

@@ -81,7 +81,11 @@ def _following(
     seen = SeenOutline(None, 0)
     for round_ in range(OUTLINE_ROUNDS):
         order = [surface for _, surface in sorted(found.values(), key=itemgetter(0))]
-        for surface in (*order, *_tapered(order[0])) if round_ == 0 else order[:1]:
+        if round_ > 0:
+            other = seen_outline(order[0], scene.patch, scene.segments, scene.length_m)
+            seen = other if other.sides >= seen.sides else seen
+        else:
+          for surface in (*order, *_tapered(order[0])):
             if seen.sides >= 2:
                 break
             other = seen_outline(surface, scene.patch, scene.segments, scene.length_m)

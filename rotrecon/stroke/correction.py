@@ -2,13 +2,13 @@
 
 import numpy as np
 
-from rotrecon.arrays import Floats
+from rotrecon.arrays import Bools, Floats
 from rotrecon.camera import PinholeCamera
-from rotrecon.drawing import Drawing, ObjectAxis
+from rotrecon.drawing import AreaOfInterest, Drawing, ObjectAxis, area_mask
 from rotrecon.outcome import Fit
 from rotrecon.primitives import Sphere
 
-LEAST_COVERED = 0.8
+LEAST_COVERED = 0.75
 """Share of the object's length that a careful stroke covers at least."""
 MOST_BESIDE = 0.1
 """Widths by which its middle may lie beside the axis."""
@@ -16,6 +16,9 @@ MOST_TURNED_RAD = float(np.deg2rad(4.0))
 """By which it may be turned."""
 INSET_PX = 1.0
 """How far it stays inside the object's ends."""
+
+MOST_PX = 20000
+"""Longer than the diagonal of any picture: what is fitted to nothing may be of any length."""
 
 
 def corrected(drawing: Drawing, fit: Fit, camera: PinholeCamera) -> ObjectAxis | None:
@@ -43,10 +46,21 @@ def corrected(drawing: Drawing, fit: Fit, camera: PinholeCamera) -> ObjectAxis |
         and (turned_rad <= MOST_TURNED_RAD or isinstance(fit.solid, Sphere))
     ):
         return None
-    ends = np.array([min(first, INSET_PX), max(last, length_px - INSET_PX)])
-    size_px = np.array([camera.width, camera.height]) - 1.0
-    (u0, v0), (u1, v1) = np.clip(found[0] + ends[:, None] * along, 0.0, size_px).tolist()
+    reach = np.arange(min(first, INSET_PX), max(last, length_px - INSET_PX), 1.0)[:MOST_PX]
+    places = found[0] + reach[:, None] * along
+    places = places[_inside(drawing.area, places, camera)]
+    if len(places) < 2:
+        return None
+    (u0, v0), (u1, v1) = places[[0, -1]].tolist()
     return ObjectAxis((u0, v0), (u1, v1))
+
+
+def _inside(area: AreaOfInterest, places_px: Floats, camera: PinholeCamera) -> Bools:
+    """Which places (n, 2) are on pixels of an area."""
+    size_px = (camera.width, camera.height)
+    column, row = np.floor(np.clip(places_px, -1.0, size_px) + 0.5).astype(np.int32).T
+    on_frame = (column >= 0) & (column < camera.width) & (row >= 0) & (row < camera.height)
+    return on_frame & (area_mask(area, size_px)[row * on_frame, column * on_frame] > 0)
 
 
 def _along(fit: Fit, drawn_px: Floats, camera: PinholeCamera) -> Floats:
