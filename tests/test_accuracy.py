@@ -24,7 +24,7 @@ COVERED = 0.8
 
 @pytest.fixture(scope="module")
 def found() -> Found:
-    plan = Plan(poses=POSES, draws=1, cells=(OUTLIERS, *CORRELATED), compared=False)
+    plan = Plan(poses=POSES, draws=1, matched_draws=1, cells=(OUTLIERS, *CORRELATED), compared=False)
     full = replace(plan, poses=FULL_POSES, cells=(FULL_MODEL,), supersampling=1)
     return Found([*trials(plan), *trials(full)])
 

@@ -26,6 +26,7 @@ from app.bench.accuracy.misdrawn import AREA_TWICE, MISTAKES, misdrawn, width_px
 from app.bench.accuracy.outcome import TRUE_KINDS, Outcome
 from app.bench.accuracy.statistics import coverage, errors, far_off_count, radius_coverage, refused_share
 from app.bench.accuracy.trials import Plan
+from app.bench.accuracy.unanswerable import AREAS
 from app.cli import cli
 from rotrecon.primitives import Frustum, Sphere
 from rotrecon.simulation.raycast import first_hit
@@ -204,8 +205,9 @@ def missing_module(name: str) -> None:
 
 
 def test_document_puts_figures_beside_what_is_asked():
-    plan = Plan("paper", poses=1, draws=1, compared=False, supersampling=1, objects=("leg", "cone"))
-    text = document.accuracy_document(extent=document.Extent(plan, misdrawn_poses=1, runs=1, processes=1))
+    plan = Plan("paper", poses=1, draws=1, matched_draws=1, compared=False, supersampling=1, objects=("leg", "cone"))
+    extent = document.Extent(plan, misdrawn_poses=1, areas=AREAS[:1], runs=1, processes=1)
+    text = document.accuracy_document(extent=extent)
     assert "nan" not in text
     assert "Not measured: no folder of recordings was named." in text
     for part in (
@@ -214,6 +216,7 @@ def test_document_puts_figures_beside_what_is_asked():
         "### Cone",
         "## Intervals",
         "## Kinds",
+        "## Nothing round",
         "## Careless drawings",
         "## Speed",
     ):

@@ -4,6 +4,7 @@ from typing import Any
 
 import pytest
 
+from app.bench.accuracy.unanswerable import AREAS, ERRORS, SIMULATED, Area
 from rotrecon.answer import answer
 from rotrecon.drawing import DrawingError
 from rotrecon.reconstruct import reconstruct
@@ -11,7 +12,7 @@ from rotrecon.settings import Settings
 from rotrecon.simulation.distractors import SMALL_CAMERA
 from rotrecon.simulation.simulate import simulate
 from rotrecon.simulation.stereo_noise import StereoErrors
-from tests.distractors import AREAS, ERRORS, Area
+from tests.recordings import DATA, recording
 
 NO_DEPTH = {"hole", "no depth"}
 MAY_HAVE_NONE = NO_DEPTH | {"few pixels"}
@@ -19,7 +20,9 @@ MAY_HAVE_NONE = NO_DEPTH | {"few pixels"}
 
 def ask(area: Area) -> dict[str, Any] | None:
     """The answer, or None where the drawing itself is refused."""
-    frame, drawing = area.load()
+    if area.source != SIMULATED:
+        recording(area.source)
+    frame, drawing = area.load(DATA)
     try:
         return answer(reconstruct(frame, drawing, Settings()))
     except DrawingError:
@@ -46,4 +49,4 @@ def test_what_is_round_is_answered_with_certainty_by_the_same_settings(name: str
 
 def test_the_areas_are_many_and_different() -> None:
     assert len(set(AREAS)) == len(AREAS) >= 200
-    assert sum(area.source != "simulated" for area in AREAS) >= 60
+    assert sum(area.source != SIMULATED for area in AREAS) >= 60

@@ -5,11 +5,12 @@ import pytest
 from hypothesis import given
 from hypothesis import strategies as st
 
+from app.bench.accuracy.unanswerable import AREAS
 from rotrecon.answer import answer
 from rotrecon.reconstruct import reconstruct
 from rotrecon.settings import Settings
 from rotrecon.two_objects import shows_two
-from tests.distractors import AREAS
+from tests.recordings import DATA
 
 PITCH_M = 0.001
 ROWS = 40
@@ -49,6 +50,6 @@ def test_nothing_is_not_two():
     "area", [area for area in AREAS if str(area) in ("simulated: two rods 0", "simulated: two rods 1")], ids=str
 )
 def test_the_operator_is_told_to_draw_round_one_of_them(area):
-    content = answer(reconstruct(*area.load(), Settings()))
+    content = answer(reconstruct(*area.load(DATA), Settings()))
     assert content["diameter_mm"] is None
     assert "one of them" in content["reasons"][0]

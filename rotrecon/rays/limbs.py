@@ -164,9 +164,11 @@ def seen_outline(surface: Surface, patch: Patch, segments: CrossSegments, length
     nothing = SeenOutline(None, 0)
     if surface.side > 0 or patch.is_plain:
         return nothing
-    # what is beside the stroke is not at its heights where one looks along the axis
     heights_m = np.linspace(-OUTLINE_REACH, OUTLINE_REACH, OUTLINE_SECTIONS) * length_m
     limbs = limbs_of(surface, patch.camera, heights_m)
+    if isinstance(surface, Ball):
+        return edges_at(limbs, surface, patch)
+    # what is beside the stroke is not at its heights where one looks along the axis
     row = (limbs.point_px - segments.origin_px) @ segments.along
     return edges_at(limbs.chosen((row >= 0) & (row <= len(segments.pixel))), surface, patch)
 

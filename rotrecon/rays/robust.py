@@ -28,8 +28,6 @@ BEYOND_PX = 1.5
 """How far outside its outline a surface has nothing to do with a depth: nearer, its limb may be off by as much."""
 OUT_OF_QUESTION = 20.0
 """Difference of costs at which a shape is not asked any further: its odds are one to half a billion."""
-OUTLINE_ROUNDS = 2
-"""The better the surface, the more of its outline is found."""
 
 
 @dataclass(frozen=True, eq=False)
@@ -76,26 +74,25 @@ def _following(
 ) -> tuple[Outlines, dict[Shape, tuple[float, Surface]]]:
     """The outline in the picture, and the surfaces with their costs once they have followed it.
 
-    From a surface that has followed one side of it, the other may be seen too.
+    It is looked for again from the best surface then: what it looks like from there hangs less on the drawing.
     """
+    order = [surface for _, surface in sorted(found.values(), key=itemgetter(0))]
     seen = SeenOutline(None, 0)
-    for round_ in range(OUTLINE_ROUNDS):
-        order = [surface for _, surface in sorted(found.values(), key=itemgetter(0))]
-        if round_ > 0:
-            other = seen_outline(order[0], scene.patch, scene.segments, scene.length_m)
-            seen = other if other.sides >= seen.sides else seen
-        else:
-          for surface in (*order, *_tapered(order[0])):
-            if seen.sides >= 2:
-                break
-            other = seen_outline(surface, scene.patch, scene.segments, scene.length_m)
-            seen = max(seen, other, key=lambda one: one.rank)
-        if seen.edges is None:
-            return (), found
-        edges = seen.edges
-        found = {shape: _followed(scene, held, surface, edges) for shape, (_, surface) in found.items()}
-    assert seen.edges is not None
-    return ((seen.edges, 1.0),), found
+    for surface in (*order, *_tapered(order[0])):
+        if seen.sides >= 2:
+            break
+        seen = max(seen, _seen(scene, surface), key=lambda one: one.rank)
+    if seen.edges is None:
+        return (), found
+    found = _followed(scene, held, found, seen.edges)
+    again = _seen(scene, min(found.values(), key=itemgetter(0))[1])
+    if again.edges is None or again.sides < seen.sides:
+        return ((seen.edges, 1.0),), found
+    return ((again.edges, 1.0),), _followed(scene, held, found, again.edges)
+
+
+def _seen(scene: Scene, surface: Surface) -> SeenOutline:
+    return seen_outline(surface, scene.patch, scene.segments, scene.length_m)
 
 
 def _tapered(surface: Surface) -> list[Surface]:
@@ -105,11 +102,16 @@ def _tapered(surface: Surface) -> list[Surface]:
     return [replace(surface, slope=surface.slope + float(np.tan(angle)), tapers=True) for angle in OTHER_TAPERS_RAD]
 
 
-def _followed(scene: Scene, held: Held, surface: Surface, edges: Outline) -> tuple[float, Surface]:
-    """Cost and surface, once it has followed the outline."""
-    units, free = surface.units(scene.length_m), held.free(surface)
-    surface = follow(surface, scene.patch, scene.pixels, units, free, (edges, scene.outline))
-    return coarse_cost(replace(scene, outline=edges), surface), surface
+def _followed(
+    scene: Scene, held: Held, found: dict[Shape, tuple[float, Surface]], edges: Outline
+) -> dict[Shape, tuple[float, Surface]]:
+    """The surfaces with their costs, once they have followed an outline."""
+    followed: dict[Shape, tuple[float, Surface]] = {}
+    for shape, (_, surface) in found.items():
+        units, free = surface.units(scene.length_m), held.free(surface)
+        surface = follow(surface, scene.patch, scene.pixels, units, free, (edges, scene.outline))
+        followed[shape] = (coarse_cost(replace(scene, outline=edges), surface), surface)
+    return followed
 
 
 def _settled(scene: Scene, held: Held, surface: Surface, outlines: Outlines) -> RayFit | None:

@@ -10,8 +10,8 @@ from rotrecon.primitives import Sphere
 
 LEAST_COVERED = 0.75
 """Share of the object's length that a careful stroke covers at least."""
-MOST_BESIDE = 0.1
-"""Widths by which its middle may lie beside the axis."""
+MOST_BESIDE, STEADY_PX = 0.1, 3.0
+"""Widths by which its middle may lie beside the axis, or what no hand is steadier than."""
 MOST_TURNED_RAD = float(np.deg2rad(4.0))
 """By which it may be turned."""
 INSET_PX = 1.0
@@ -42,7 +42,7 @@ def corrected(drawing: Drawing, fit: Fit, camera: PinholeCamera) -> ObjectAxis |
     width_px = 2 * float(fit.solid.radius_at(0.0)) * camera.focal_px / float(fit.solid.center_m[2])
     if (
         covered >= LEAST_COVERED * length_px
-        and beside_px <= MOST_BESIDE * width_px
+        and beside_px <= max(MOST_BESIDE * width_px, STEADY_PX)
         and (turned_rad <= MOST_TURNED_RAD or isinstance(fit.solid, Sphere))
     ):
         return None

@@ -47,6 +47,7 @@ def main(
         poses,
         seed,
         draws=1,
+        matched_draws=1,
         cells=tuple(c for c in Plan().cells if cell in c.name),
         objects=(object_,) if object_ else tuple(TRUE_KINDS),
         compared=False,

@@ -24,6 +24,8 @@ from app.bench.accuracy.size_tables import (
 )
 from app.bench.accuracy.timings import RUNS, timing_table
 from app.bench.accuracy.trials import Found, Plan, trials
+from app.bench.accuracy.unanswerable import AREAS, Area
+from app.bench.accuracy.unanswerable_table import unanswerable_table
 from app.bench.table import wrapped
 from rotrecon.simulation.simulate import DISTANCE_M, OBJECTS, TILT_RAD
 
@@ -34,13 +36,15 @@ class Extent:
 
     plan: Plan = field(default_factory=Plan)
     misdrawn_poses: int = MISDRAWN_POSES
+    areas: tuple[Area, ...] = AREAS
+    """Of which none has a certain answer."""
     runs: int = RUNS
     processes: int | None = None
     """None takes one of every core."""
 
 
 def accuracy_document(recordings: Path | None = None, extent: Extent | None = None) -> str:
-    """The document; most of an hour of work on two cores unless a smaller extent is named.
+    """The document; an hour of work on two cores unless a smaller extent is named.
 
     Raises SceneError for a recording that the folder has not, and PeerMissing for a package that is not installed.
     """
@@ -53,13 +57,14 @@ def accuracy_document(recordings: Path | None = None, extent: Extent | None = No
     speed, speed_goals = timing_table(tin, plan.method, extent.runs)
     found = Found(trials(plan, extent.processes))
     moved = movements(plan.method, extent.misdrawn_poses, extent.processes)
+    unanswerable, unanswerable_goals = unanswerable_table(recordings, plan.method, extent.areas, extent.processes)
     white, white_goals = white_tables(found, plan)
     correlated, correlated_goals = correlated_table(found, plan)
     coverage, coverage_goals = coverage_table(found, plan)
     recognition, recognition_goals = recognition_table(found, plan)
     misdrawn, misdrawn_goals = misdrawn_table(moved)
-    goals = [*white_goals, *correlated_goals, *coverage_goals, *recognition_goals, *misdrawn_goals]
-    goals += [*recorded_goals, *speed_goals]
+    goals = [*white_goals, *correlated_goals, *coverage_goals, *recognition_goals]
+    goals += [*unanswerable_goals, *misdrawn_goals, *recorded_goals, *speed_goals]
     parts = [
         _summary(goals, plan),
         _introduction(plan),
@@ -69,6 +74,7 @@ def accuracy_document(recordings: Path | None = None, extent: Extent | None = No
         _peers(peer_table(found, plan), plan),
         _coverage(coverage),
         _recognition(recognition),
+        _unanswerable(unanswerable),
         _misdrawn(misdrawn, extent),
         _recorded(recorded),
         _speed(speed),
@@ -104,7 +110,8 @@ def _introduction(plan: Plan) -> str:
 - **Correlated noise** has a standard deviation of {MATCHED.disparity_sigma_px} px. "A kernel of {KERNEL_PX} px" can be
   read in two ways: `length` has an autocorrelation of exp(-(lag / {KERNEL_PX} px)^2), `box` is white noise averaged
   over {KERNEL_PX} x {KERNEL_PX} px. The whole view has depth. `matched` is the simulator's full model. Each pose is
-  drawn and measured {plan.draws} times with `length` and with `box`, every time with other noise and another drawing.
+  drawn and measured {plan.draws} times with `length` and with `box`, {plan.matched_draws} times with `matched`, every
+  time with other noise and another drawing.
 - **Drawing**: an ideal operator's, every corner and both ends of the stroke moved by 3 px at random; the kind is not
   told. Whatever kind the answer has, its radius is compared with the true one; a cone's in the middle of its pixels,
   and what its interval is worth where the answer itself has its middle.
@@ -113,8 +120,9 @@ def _introduction(plan: Plan) -> str:
   pixels between the ends of the stroke that are no outliers, with the axis (2 + 2), the radius and a cone's slope
   unknown, or a ball's centre and radius. It is derived from the ray-cast depth alone and shares no derivative with the
   program. A cell's bound is the root mean square of its poses' bounds. It knows which pixels are the object's and which
-  are outliers; a program that has to find out cannot quite reach it. Where the whole view has depth, a few pixels at
-  the limb decide the bound, which assumes that errors there are small: it is then too good to be reached."""
+  are outliers, which a program has to find out. It knows nothing of the wall: what is seen beside an object limits its
+  size too, so that where little of the object is seen the program can do better. Where the whole view has depth, a few
+  pixels at the limb decide the bound, which assumes that errors there are small: it is then too good to be reached."""
 
 
 def _white(tables: str) -> str:
@@ -122,8 +130,8 @@ def _white(tables: str) -> str:
 
 Asked for is an RMS of at most {BOUND_RATIO} times the bound in every cell, and no failure: nothing refused, nothing
 more than 10 % off. "Least squares" is orthogonal, started at the truth on the object's own pixels, where there are no
-outliers. Of the wire's cells of 120 degrees and 0.5 px the bound itself is so wide that single sizes lie more than
-10 % off by chance; the table above counts those within {FAR_SIGMAS:.0f} times their own bound.
+outliers. In the wire's cells of 120 degrees and 0.5 px the bound alone would let single sizes lie more than 10 % off
+by chance; of those that do, the table above counts which are within {FAR_SIGMAS:.0f} times their own bound.
 
 {tables}"""
 
@@ -180,6 +188,15 @@ def _recognition(tables: str) -> str:
 
 All five objects are well inside their class: the wire (25 mm) is a rod, which ends at 30 mm. Right is what the program
 called the object, certain or not.
+
+{tables}"""
+
+
+def _unanswerable(tables: str) -> str:
+    return f"""## Nothing round
+
+Areas drawn where nothing stands that could be measured: walls, tables, boxes, bars with edges, heaps, two things at
+once, holes; simulated with exact, white and matched depth in turn, and chosen by hand in the recorded scenes.
 
 {tables}"""
 

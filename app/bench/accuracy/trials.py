@@ -22,6 +22,8 @@ POSES = 200
 """Of each object."""
 DRAWS = 2
 """Noises and drawings of each pose where noise is correlated: intervals of 800 clouds of every object."""
+MATCHED_DRAWS = 3
+"""The same of the full model: of 600."""
 METHOD: Method = "robust"
 """The one whose accuracy is asked for."""
 PEER_POSES = 10
@@ -76,6 +78,7 @@ class Plan:
     poses: int = POSES
     first_seed: int = 0
     draws: int = DRAWS
+    matched_draws: int = MATCHED_DRAWS
     peer_poses: int = PEER_POSES
     cells: tuple[Cell, ...] = (*WHITE, *CORRELATED, FULL_MODEL)
     objects: tuple[str, ...] = tuple(TRUE_KINDS)
@@ -85,7 +88,8 @@ class Plan:
 
     def draws_of(self, cell: Cell) -> int:
         """How often a pose is measured in a cell."""
-        return self.draws if cell.noise in ("length", "box") else 1
+        by_noise = {"white": 1, "length": self.draws, "box": self.draws, "matched": self.matched_draws}
+        return by_noise[cell.noise]
 
     def others(self, cell: Cell, seed: int) -> dict[str, Callable[[Cloud], Outcome | None]]:
         """The methods that stand beside the one that is asked for, on a pose's first cloud."""

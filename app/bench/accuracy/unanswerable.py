@@ -3,18 +3,20 @@
 from dataclasses import dataclass
 from functools import cache
 from pathlib import Path
-from tempfile import TemporaryDirectory
 
+from app.bench.accuracy.recorded import RECORDINGS, read_recording
 from app.drawing_text import parse_area, parse_axis
 from rotrecon.drawing import Drawing
 from rotrecon.frame import Frame
-from rotrecon.scene.importing import import_scene
-from rotrecon.scene.reading import read_scene
+from rotrecon.simulation.arrangements.boxy import BOXY
+from rotrecon.simulation.arrangements.cluttered import CLUTTERED, EMPTY
+from rotrecon.simulation.arrangements.flat import FLAT
 from rotrecon.simulation.distractors import SMALL_CAMERA, WHITE, distractor
 from rotrecon.simulation.simulate import DEFAULT_CAMERA
 from rotrecon.simulation.stereo_noise import StereoErrors
-from tests.recordings import recording
 
+SIMULATED = "simulated"
+GROUPS = {"flat": FLAT, "boxy": BOXY, "cluttered": CLUTTERED, "empty": EMPTY}
 HOW_MANY = {
     "wall": 4, "table": 5, "plank": 4, "bumpy": 6, "roof": 6,
     "outside corner": 6, "inside corner": 6, "step": 5, "staircase": 4,
@@ -124,37 +126,38 @@ class Area:
     """One area that is not to be answered with certainty."""
 
     source: str
-    """A recording, or "simulated"."""
+    """A recording, or `SIMULATED`."""
     kind: str
     seed: int = 0
 
     def __str__(self) -> str:
-        return f"{self.source}: {self.kind}" + (f" {self.seed}" if self.source == "simulated" else "")
+        return f"{self.source}: {self.kind}" + (f" {self.seed}" if self.source == SIMULATED else "")
 
-    def load(self) -> tuple[Frame, Drawing]:
-        """Its frame and drawing; simulated depth is exact, with white noise and matched in turn."""
-        if self.source != "simulated":
+    @property
+    def group(self) -> str:
+        """What there is instead of something round."""
+        groups = (name for name, makers in GROUPS.items() if self.kind in makers)
+        return next(groups) if self.source == SIMULATED else "recorded"
+
+    def load(self, recordings: Path) -> tuple[Frame, Drawing]:
+        """Its frame, from a folder of recordings if it is of one, and its drawing; SceneError for one that is missing.
+
+        Simulated depth is exact, with white noise and matched in turn.
+        """
+        if self.source != SIMULATED:
             area, axis = RECORDED[self.source][self.kind]
-            return recorded_frame(self.source), Drawing(parse_area(area), parse_axis(axis))
+            return _recorded(self.source, recordings), Drawing(parse_area(area), parse_axis(axis))
         camera = DEFAULT_CAMERA if self.seed % 6 == 5 else SMALL_CAMERA
         scene = distractor(self.kind, self.seed, ERRORS[self.seed % 3], camera, picture=self.seed % 4 in (1, 2))
         return scene.frame, scene.drawing
 
 
 AREAS = tuple(
-    [Area("simulated", kind, seed) for kind, count in HOW_MANY.items() for seed in range(count)]
+    [Area(SIMULATED, kind, seed) for kind, count in HOW_MANY.items() for seed in range(count)]
     + [Area(source, kind) for source, areas in RECORDED.items() for kind in areas]
 )
 
 
 @cache
-def recorded_frame(name: str) -> Frame:
-    """The frame of a recording, imported if it is a bag."""
-    if name != "ros1_can":
-        frame = read_scene(recording(name)).frame()
-    else:
-        with TemporaryDirectory() as folder:
-            import_scene(recording(name) / "perception_tutorial.bag", Path(folder) / "can")
-            frame = read_scene(Path(folder) / "can").frame()
-    assert isinstance(frame, Frame)
-    return frame
+def _recorded(name: str, recordings: Path) -> Frame:
+    return read_recording(next(one for one in RECORDINGS if one.name == name), recordings)
