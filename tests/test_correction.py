@@ -1,0 +1,99 @@
+"""A careless stroke is put right, a careful one left alone."""
+
+from dataclasses import replace
+
+import numpy as np
+import pytest
+from hypothesis import given, settings
+from hypothesis import strategies as st
+
+from app.bench.accuracy.misdrawn import misdrawn, width_px
+from rotrecon.drawing import Constraints, Drawing, ObjectAxis, area_mask
+from rotrecon.outcome import Fit
+from rotrecon.primitives import Frustum, Sphere
+from rotrecon.reconstruct import reconstruct
+from rotrecon.settings import Settings
+from rotrecon.simulation.ideal_drawing import ideal_drawing
+from rotrecon.simulation.simulate import DEFAULT_CAMERA, simulate
+from rotrecon.simulation.stereo_noise import StereoErrors
+from rotrecon.stroke.correction import corrected
+from tests.exact import cone, cylinder, direction_of
+
+CAMERA = DEFAULT_CAMERA
+SIZE = (CAMERA.width, CAMERA.height)
+SOLIDS = {
+    "pipe": cylinder(np.array([0.02, -0.03, 0.9]), direction_of(20, 30), 0.1),
+    "cone": cone(np.array([0.0, 0.02, 0.8]), direction_of(-15, 80), 0.1, 12, 0.2),
+    "ball": Sphere(np.array([0.03, 0.01, 0.8]), np.array([0.6, 0.8, 0.0]), 0.1),
+}
+of_each = pytest.mark.parametrize("name", SOLIDS)
+
+
+def fit_of(solid: Frustum | Sphere) -> Fit:
+    return Fit(solid, np.zeros(0, dtype=np.uint8), np.zeros(0), 0.0, 2.5, concave=False)
+
+
+def careless(name: str) -> tuple[Drawing, dict[str, Drawing]]:
+    drawing = ideal_drawing(SOLIDS[name], CAMERA)
+    return drawing, misdrawn(drawing, width_px(drawing), SIZE)
+
+
+@of_each
+def test_a_careful_stroke_is_left_alone(name):
+    drawing, others = careless(name)
+    assert corrected(drawing, fit_of(SOLIDS[name]), CAMERA) is None
+    assert corrected(others["area twice too large"], fit_of(SOLIDS[name]), CAMERA) is None
+
+
+@of_each
+@pytest.mark.parametrize("mistake", ["axis 10 degrees off", "axis 30 % short", "axis 20 % of the width beside"])
+def test_a_careless_stroke_becomes_the_careful_one(name, mistake):
+    drawing, others = careless(name)
+    if name == "ball" and mistake == "axis 10 degrees off":
+        return  # a ball has no axis that a stroke could be off
+    stroke = corrected(others[mistake], fit_of(SOLIDS[name]), CAMERA)
+    assert stroke is not None
+    ideal, found = (np.array([one.start_px, one.end_px]) for one in (drawing.stroke, stroke))
+    along = (ideal[1] - ideal[0]) / np.linalg.norm(ideal[1] - ideal[0])
+    beside = (found - ideal[0]) @ np.array([-along[1], along[0]])
+    assert np.abs(beside).max() < 3.0
+    assert (found[1] - found[0]) @ along > 0.9 * (ideal[1] - ideal[0]) @ along
+
+
+@of_each
+def test_a_stroke_that_holds_the_direction_is_left_alone(name):
+    _, others = careless(name)
+    held = replace(others["axis 30 % short"], constraints=Constraints(direction="drawn"))
+    assert corrected(held, fit_of(SOLIDS[name]), CAMERA) is None
+
+
+@settings(max_examples=50, deadline=None)
+@given(
+    center=st.tuples(st.floats(-3, 3), st.floats(-3, 3), st.floats(0.1, 5)),
+    tilt=st.floats(-90, 90),
+    roll=st.floats(0, 360),
+    diameter=st.floats(0.001, 50),
+    length=st.floats(0.001, 50),
+)
+def test_whatever_was_found_a_corrected_stroke_lies_in_the_area(center, tilt, roll, diameter, length):
+    drawing, _ = careless("pipe")
+    solid = cylinder(np.array(center), direction_of(tilt, roll), diameter, length)
+    stroke = corrected(drawing, fit_of(solid), CAMERA)
+    if stroke is not None:
+        column, row = np.floor(np.array([stroke.start_px, stroke.end_px]) + 0.5).astype(int).T
+        assert area_mask(drawing.area, SIZE)[row, column].all()
+
+
+def test_an_object_is_measured_as_if_a_short_stroke_had_been_drawn_over_all_of_it():
+    scene = simulate("cone", 2, noise=StereoErrors())
+    stroke = scene.drawing.stroke
+    start, end = np.array(stroke.start_px), np.array(stroke.end_px)
+    short = replace(scene.drawing, axis=ObjectAxis(stroke.start_px, tuple(start + 0.65 * (end - start))))
+    whole, result = (reconstruct(scene.frame, drawing, Settings()) for drawing in (scene.drawing, short))
+    assert result.drawing == short, "what was drawn stays as it was drawn"
+    assert len(result.segments.pixel) > 0.9 * len(whole.segments.pixel)
+    assert isinstance(whole.fit, Fit)
+    assert isinstance(result.fit, Fit)
+    assert whole.fit.intervals is not None
+    low_m, high_m = whole.fit.intervals.diameter_m
+    assert abs(result.fit.solid.radius_m - whole.fit.solid.radius_m) < (high_m - low_m) / 4
