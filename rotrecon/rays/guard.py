@@ -5,9 +5,8 @@ from dataclasses import dataclass, replace
 import numpy as np
 
 from rotrecon.arrays import Bools, Floats
-from rotrecon.rays.ball import Ball
+from rotrecon.rays.doubting import doubting, sizes_of
 from rotrecon.rays.fitting import Outlines
-from rotrecon.rays.lateral import Lateral
 from rotrecon.rays.losses import tukey
 from rotrecon.rays.patch import Patch
 from rotrecon.rays.ray_fit import FINE_ROUNDS, MOST_DIFFERENCES, RayFit, Sight, by_differences, fine, predicted
@@ -26,11 +25,6 @@ ROUGHER = 1.1
 """Depths that err in one way alone do not become rougher toward the limbs by more than this, and by chance."""
 CHANCE, SUSPICION = 3.5, 1.0
 """Standard deviations by which inner depths may be explained worse, and by which a size may differ from theirs."""
-CORRECTION_DOUBT = 0.25
-"""Standard deviation of what one way to a size changes, over the change: neither way is without error."""
-CONE_DOUBT, BALL_DOUBT = 0.1, 0.9
-"""The same of a cone, which its outline holds by much more than its size, and of a ball, whose panels and shadows run
-along its outline (both measured on simulated stereo)."""
 WINDOWS_AT_MOST = 1.3
 """Times as rough as the inner ones, at most, windows alone make all depths (measured on simulated stereo)."""
 DECISIVE = 1.03
@@ -101,7 +95,7 @@ def _by_differences(whole: RayFit, task: Task) -> RayFit | None:
     fit = replace(whole, sight=Sight(differences=True))
     for most, rounds in ((SCOUTS, 1), (MOST_DIFFERENCES, FINE_ROUNDS)):
         fit = by_differences(fit, task.patch, task.units, most, rounds)
-        apart = _size(fit.surface) - _size(whole.surface)
+        apart = sizes_of(fit.surface) - sizes_of(whole.surface)
         both = plain + fit.covariance[sizes, sizes]
         # two that end at the same limit have not been compared
         if not apart.any() or not np.isfinite(both).all():
@@ -135,26 +129,6 @@ def _as_large(fit: RayFit, inner: RayFit) -> bool:
     variance = np.maximum(np.diag(inner.covariance) - np.diag(fit.covariance), 0.0)[fit.surface.size_place]
     apart = abs(fit.surface.size_m - inner.surface.size_m)
     return bool(apart <= SUSPICION * np.sqrt(variance) + 1e-6)
-
-
-def doubting(fit: RayFit, other: RayFit) -> RayFit:
-    """A fit that is less sure of its size by a share of its difference from another, which believes other things."""
-    apart = np.zeros(len(fit.free))
-    apart[fit.surface.size_place :] = _doubt(fit.surface) * (_size(fit.surface) - _size(other.surface))
-    return replace(fit, doubt=fit.doubt + np.outer(apart, apart))
-
-
-def _doubt(surface: Surface) -> float:
-    if isinstance(surface, Ball):
-        return BALL_DOUBT
-    return CONE_DOUBT if surface.tapers else CORRECTION_DOUBT
-
-
-def _size(surface: Surface) -> Floats:
-    """Radius, and slope where it is a parameter."""
-    return np.array(
-        [surface.radius_m, surface.slope] if isinstance(surface, Lateral) and surface.tapers else [surface.radius_m]
-    )
 
 
 def _odd(value: float) -> int:

@@ -8,8 +8,9 @@ import numpy as np
 
 from rotrecon.arrays import Floats
 from rotrecon.rays.coarse_fit import follow
+from rotrecon.rays.doubting import doubting, doubting_outline
 from rotrecon.rays.fitting import Outline, Outlines
-from rotrecon.rays.guard import Task, doubting, settle
+from rotrecon.rays.guard import Task, settle
 from rotrecon.rays.hypotheses import Held, Scene, coarse_cost, hypotheses
 from rotrecon.rays.lateral import Lateral
 from rotrecon.rays.limbs import SeenOutline, seen_outline
@@ -126,7 +127,7 @@ def _settled(scene: Scene, held: Held, surface: Surface, outlines: Outlines) -> 
 
 def _doubted(scene: Scene, both: RayFit, depths: RayFit, units: Floats) -> RayFit:
     """A fit to depths and outline that doubts what the outline changes, and what the limbs as they are would change."""
-    doubted = doubting(both, depths)
+    doubted = doubting_outline(both, depths)
     if depths.sight.whole:
         return doubted
     whole = _sound(fine(both.surface, scene.patch, units, both.free, Sight(), both.outlines))

@@ -8,8 +8,8 @@ from rotrecon.drawing import AreaOfInterest, Drawing, ObjectAxis, area_mask
 from rotrecon.outcome import Fit
 from rotrecon.primitives import Sphere
 
-LEAST_COVERED = 0.75
-"""Share of the object's length that a careful stroke covers at least."""
+LEAST_COVERED = 0.72
+"""Share of the object's length that a careful stroke covers at least: ends are no place to draw in."""
 MOST_BESIDE, STEADY_PX = 0.1, 3.0
 """Widths by which its middle may lie beside the axis, or what no hand is steadier than."""
 MOST_TURNED_RAD = float(np.deg2rad(4.0))
