@@ -17,7 +17,7 @@ CONE_DOUBT, BALL_DOUBT = 0.1, 0.9
 outline."""
 ONE_SIDED_DOUBT = 0.75
 """The same where an outline is seen on one side only, which alone says no width."""
-TWO_SIDED_DOUBT = 0.35
+TWO_SIDED_DOUBT = 0.3
 """Where both sides are seen: that of the geometric mean of the change and the fit's own standard deviation."""
 
 
@@ -37,15 +37,15 @@ def doubting_outline(both: RayFit, depths: RayFit) -> RayFit:
     """A fit to depths and an outline that is less sure by some of what the outline changes.
 
     Between its two sides an outline is as wide as the object, whatever the depths are worth: what they are off by says
-    less, the more of its own standard deviations it is.
+    less, the more of its own standard deviations it is, and nothing of how the sides converge.
     """
     apart = _apart(both, depths)
     if isinstance(both.surface, Ball):
         return doubting(both, depths)
     if max(len(outline.alike) for outline, _ in both.outlines) < 2:
         return _less_sure(both, ONE_SIDED_DOUBT * apart)
-    own = np.sqrt(np.diag(both.covariance)[both.surface.size_place :])
-    return _less_sure(both, TWO_SIDED_DOUBT * np.sign(apart) * np.sqrt(own * np.abs(apart)))
+    own = float(np.sqrt(both.covariance[both.surface.size_place, both.surface.size_place]))
+    return _less_sure(both, TWO_SIDED_DOUBT * np.sqrt(own * np.abs(apart)) * (np.arange(len(apart)) == 0))
 
 
 def _apart(fit: RayFit, other: RayFit) -> Floats:
