@@ -14,7 +14,9 @@ from rotrecon.judgement import failure_of, too_little
 from rotrecon.outcome import FailureReason, FitFailure
 from rotrecon.rays.hypotheses import Held, Scene, scene_of
 from rotrecon.rays.lateral import Lateral
+from rotrecon.rays.losses import robust_scale
 from rotrecon.rays.patch import Patch, patch_of
+from rotrecon.rays.ray_fit import RayFit, Sight, predicted
 from rotrecon.rays.robust import Ranked, rank
 from rotrecon.rays.starts import robust_line
 from rotrecon.recognition import chosen_of, intervals_of
@@ -88,7 +90,9 @@ def _find(scene: Scene, held: Held, segmented: Reconstruction) -> Found | FitFai
         return found
     turned = fit_turned(scene.patch, scene.ridge, chosen.fit)
     assert chosen.fit is not None
-    if turned is None or not turned.sigma < settings.turned_sigma * chosen.fit.sigma:
+    if turned is None:
+        return found
+    if not _roughness_over(turned, chosen, scene.patch) < settings.turned_sigma:
         return found
     whole = Ranked("revolution", turned.surface, turned, 0.0)
     better = _followed_along((whole, *(replace(one, cost=one.cost + 1.0) for one in ranked)), whole, scene, settings)
@@ -107,6 +111,13 @@ def _is_part_only(found: Found | FitFailure, chosen: Ranked, scene: Scene, setti
     low, high = np.percentile(chosen.surface.heights(scene.ridge.points_m), [5, 95])
     covered = min(high, found.ends_m[1]) - max(low, found.ends_m[0])
     return bool(covered < settings.covered_length * (high - low))
+
+
+def _roughness_over(turned: RayFit, chosen: Ranked, patch: Patch) -> float:
+    """Residuals of a turned surface over those of a simpler one of the same pixels, as if both were as simple."""
+    simple = robust_scale(predicted(patch, turned.pixels, chosen.surface, Sight()).residual)
+    freedoms = max(turned.independent - float(turned.free.sum()), 1.0)
+    return robust_scale(turned.residual) / simple * float(np.sqrt(turned.independent / freedoms))
 
 
 def _interval_over_size(ranked: Ranked) -> float:

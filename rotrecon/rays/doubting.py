@@ -15,10 +15,9 @@ CORRECTION_DOUBT = 0.25
 CONE_DOUBT, BALL_DOUBT = 0.1, 0.9
 """The same of a cone, whose depths hold it by more than its size, and of a ball, whose panels and shadows run along its
 outline."""
-ONE_SIDED_DOUBT = 0.75
-"""The same where an outline is seen on one side only, which alone says no width."""
-TWO_SIDED_DOUBT = 0.3
-"""Where both sides are seen: that of the geometric mean of the change and the fit's own standard deviation."""
+ONE_SIDED_DOUBT, TWO_SIDED_DOUBT = 1.25, 0.3
+"""That of what an outline changes, over the geometric mean of the change and the fit's own standard deviation: where it
+is seen on one side only, which alone says no width, and on both."""
 
 
 def sizes_of(surface: Surface) -> Floats:
@@ -34,18 +33,17 @@ def doubting(fit: RayFit, other: RayFit) -> RayFit:
 
 
 def doubting_outline(both: RayFit, depths: RayFit) -> RayFit:
-    """A fit to depths and an outline that is less sure by some of what the outline changes.
+    """A fit to depths and an outline that is less sure of its radius by some of what the outline changes.
 
-    Between its two sides an outline is as wide as the object, whatever the depths are worth: what they are off by says
-    less, the more of its own standard deviations it is, and nothing of how the sides converge.
+    What depths alone are off by says less, the more of the fit's own standard deviations it is: an outline seen on both
+    sides is as wide as the object, whatever they are worth, and converges as the object does.
     """
-    apart = _apart(both, depths)
     if isinstance(both.surface, Ball):
         return doubting(both, depths)
-    if max(len(outline.alike) for outline, _ in both.outlines) < 2:
-        return _less_sure(both, ONE_SIDED_DOUBT * apart)
+    sides = max(len(outline.alike) for outline, _ in both.outlines)
     own = float(np.sqrt(both.covariance[both.surface.size_place, both.surface.size_place]))
-    return _less_sure(both, TWO_SIDED_DOUBT * np.sqrt(own * np.abs(apart)) * (np.arange(len(apart)) == 0))
+    apart = np.sqrt(own * np.abs(_apart(both, depths))) * (np.arange(len(sizes_of(both.surface))) == 0)
+    return _less_sure(both, (TWO_SIDED_DOUBT if sides > 1 else ONE_SIDED_DOUBT) * apart)
 
 
 def _apart(fit: RayFit, other: RayFit) -> Floats:

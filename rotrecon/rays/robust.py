@@ -10,7 +10,7 @@ from rotrecon.arrays import Floats
 from rotrecon.rays.coarse_fit import follow
 from rotrecon.rays.doubting import doubting, doubting_outline
 from rotrecon.rays.fitting import Outline, Outlines
-from rotrecon.rays.guard import Task, settle
+from rotrecon.rays.guard import INNER_GUARD, Task, settle
 from rotrecon.rays.hypotheses import Held, Scene, coarse_cost, hypotheses
 from rotrecon.rays.lateral import Lateral
 from rotrecon.rays.limbs import SeenOutline, seen_outline
@@ -25,6 +25,8 @@ HOPELESS = 2.0
 LITTLE = 50.0
 OTHER_TAPERS_RAD = tuple(np.deg2rad([-7.0, 7.0]))
 """By which a surface may taper more or less than its depths have it."""
+CONTRADICTED = 3.0
+"""Standard deviations of the depths' own radius by which an outline may change it before their limbs are left out."""
 BEYOND_PX = 1.5
 """How far outside its outline a surface has nothing to do with a depth: nearer, its limb may be off by as much."""
 OUT_OF_QUESTION = 20.0
@@ -122,7 +124,18 @@ def _settled(scene: Scene, held: Held, surface: Surface, outlines: Outlines) -> 
     if depths is None or not outlines:
         return depths
     both = _sound(fine(surface, scene.patch, units, free, depths.sight, outlines))
-    return both and _doubted(scene, both, depths, units)
+    if both is not None and _contradict(depths, both):
+        inner = Sight(guard=INNER_GUARD)
+        both = _sound(fine(both.surface, scene.patch, units, free, inner, outlines))
+        depths = both and _sound(fine(both.surface, scene.patch, units, free, inner))
+    return None if both is None or depths is None else _doubted(scene, both, depths, units)
+
+
+def _contradict(depths: RayFit, both: RayFit) -> bool:
+    """Whether depths alone are so sure of another radius than the outline has that limbs must mislead them."""
+    size = depths.surface.size_place
+    sigma_m = float(np.sqrt(depths.covariance[size, size]))
+    return abs(depths.surface.size_m - both.surface.size_m) > CONTRADICTED * sigma_m
 
 
 def _doubted(scene: Scene, both: RayFit, depths: RayFit, units: Floats) -> RayFit:
