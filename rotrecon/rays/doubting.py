@@ -15,7 +15,7 @@ CORRECTION_DOUBT = 0.25
 CONE_DOUBT, BALL_DOUBT = 0.1, 0.9
 """The same of a cone, whose depths hold it by more than its size, and of a ball, whose panels and shadows run along its
 outline."""
-ONE_SIDED_DOUBT, TWO_SIDED_DOUBT = 1.25, 0.3
+ONE_SIDED_DOUBT, TWO_SIDED_DOUBT = 1.25, 0.2
 """That of what an outline changes, over the geometric mean of the change and the fit's own standard deviation: where it
 is seen on one side only, which alone says no width, and on both."""
 
@@ -42,7 +42,8 @@ def doubting_outline(both: RayFit, depths: RayFit) -> RayFit:
         return doubting(both, depths)
     sides = max(len(outline.alike) for outline, _ in both.outlines)
     own = float(np.sqrt(both.covariance[both.surface.size_place, both.surface.size_place]))
-    apart = np.sqrt(own * np.abs(_apart(both, depths))) * (np.arange(len(sizes_of(both.surface))) == 0)
+    radius_only = np.arange(len(sizes_of(both.surface))) == 0
+    apart = np.sqrt(own * np.abs(_apart(both, depths))) * radius_only
     return _less_sure(both, (TWO_SIDED_DOUBT if sides > 1 else ONE_SIDED_DOUBT) * apart)
 
 

@@ -22,7 +22,7 @@ CLEAR_SHARE = 0.25
 """Of an outline, below which what is seen of the mask's edge says little."""
 OUTLINE_SECTIONS, OUTLINE_REACH = 241, 1.5
 """Heights at which the outline is looked for, and how far to both sides of the middle, in lengths of the stroke."""
-BLUR_DOUBT, PIXEL_BLUR_PX = 0.5, 0.4
+BLUR_DOUBT, PIXEL_BLUR_PX = 0.5, 0.5
 """Standard deviation of where the outline lies in a smeared edge, over the smear, and the blur of pixels alone: focus,
 compression and what a limb reflects smear it more."""
 FEWEST_LIMBS = 12

@@ -25,6 +25,8 @@ HOPELESS = 2.0
 LITTLE = 50.0
 OTHER_TAPERS_RAD = tuple(np.deg2rad([-7.0, 7.0]))
 """By which a surface may taper more or less than its depths have it."""
+OUTSMOOTHED = 0.5
+"""Residuals of another shape over those of the lead at which that one leads instead."""
 CONTRADICTED = 3.0
 """Standard deviations of the depths' own radius by which an outline may change it before their limbs are left out."""
 BEYOND_PX = 1.5
@@ -59,17 +61,27 @@ def rank(scene: Scene, held: Held) -> tuple[Ranked, ...]:
     lead = next((fit for shape in order if (fit := _settled(scene, held, followed[shape][1], outlines))), None)
     if lead is None or not np.isfinite(lead.covariance).all():
         return ()
-    ranked: list[Ranked] = []
-    for shape in order:
-        fit = _like(lead, scene, held, followed[shape][1])
-        if fit is not None and np.isfinite(fit.covariance).all():
-            ranked.append(Ranked(shape, fit.surface, fit, _credit(scene, lead, fit)))
-    ranked.sort(key=lambda one: one.cost)
+    ranked = _led(lead, scene, held, followed)
+    smoothest = min((one.fit for one in ranked if one.fit), key=lambda fit: fit.sigma)
+    if smoothest.sigma < OUTSMOOTHED * lead.sigma:
+        # to the lead that explained nothing all shapes were alike
+        lead = _settled(scene, held, smoothest.surface, outlines) or smoothest
+        ranked = _led(lead, scene, held, followed)
     best, worst = ranked[0].cost, ranked[-1].cost
     out = [
         Ranked(shape, surface, None, worst - best + cost) for shape, (cost, surface) in found.items() if cost > limit
     ]
     return (*(replace(one, cost=one.cost - best) for one in ranked), *out)
+
+
+def _led(lead: RayFit, scene: Scene, held: Held, followed: dict[Shape, tuple[float, Surface]]) -> list[Ranked]:
+    """The shapes fitted to what the lead rests on, the most credible first."""
+    ranked: list[Ranked] = []
+    for shape, (_, surface) in followed.items():
+        fit = _like(lead, scene, held, surface)
+        if fit is not None and np.isfinite(fit.covariance).all():
+            ranked.append(Ranked(shape, fit.surface, fit, _credit(scene, lead, fit)))
+    return sorted(ranked, key=lambda one: one.cost)
 
 
 def _following(
@@ -132,10 +144,11 @@ def _settled(scene: Scene, held: Held, surface: Surface, outlines: Outlines) -> 
 
 
 def _contradict(depths: RayFit, both: RayFit) -> bool:
-    """Whether depths alone are so sure of another radius than the outline has that limbs must mislead them."""
-    size = depths.surface.size_place
-    sigma_m = float(np.sqrt(depths.covariance[size, size]))
-    return abs(depths.surface.size_m - both.surface.size_m) > CONTRADICTED * sigma_m
+    """Whether depths alone are so sure of another radius of a cylinder than the outline has that limbs mislead them."""
+    if not isinstance(both.surface, Lateral) or both.surface.tapers:
+        return False
+    apart_m = abs(depths.surface.size_m - both.surface.size_m)
+    return apart_m > CONTRADICTED * float(np.sqrt(depths.covariance[4, 4]))
 
 
 def _doubted(scene: Scene, both: RayFit, depths: RayFit, units: Floats) -> RayFit:
