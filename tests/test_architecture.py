@@ -28,7 +28,7 @@ BY_SECTIONS = """
 """.split()
 FITTED = """
     rays.traces rays.lateral_rays rays.lateral rays.ball_rays rays.ball rays.surfaces rays.patch rays.correlation
-    rays.losses rays.fitting rays.whitening rays.covariance rays.ray_fit
+    rays.losses rays.fitting rays.passing rays.whitening rays.covariance rays.ray_fit rays.doubting
     rays.coarse_fit rays.starts
     edges.light edges.line_loops edges.edge_lines edges.shading edges.step_likelihood edges.edge_model
     edges.edge_steps edges.edges
@@ -45,6 +45,7 @@ PHOTOMETRY = """
 """.split()
 JUDGED = """
     two_objects intervals recognition by_pictures soundness judgement section_radii found by_rays calibration
+    stroke.correction
 """.split()
 BY_RAYS = [*FITTED, *TURNED, *PHOTOMETRY, *JUDGED]
 SHOWN = """
