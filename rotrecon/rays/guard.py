@@ -8,6 +8,7 @@ from rotrecon.arrays import Bools, Floats
 from rotrecon.rays.doubting import doubting, sizes_of
 from rotrecon.rays.fitting import Outlines
 from rotrecon.rays.losses import tukey
+from rotrecon.rays.passing import pull_of
 from rotrecon.rays.patch import Patch
 from rotrecon.rays.ray_fit import FINE_ROUNDS, MOST_DIFFERENCES, RayFit, Sight, by_differences, fine, predicted
 from rotrecon.rays.surfaces import Surface
@@ -32,6 +33,8 @@ DECISIVE = 1.03
 BORNE_OUT, TELLS_MORE = 5.0, 0.9
 """Standard deviations of a fit by which differences of its depths may have another size, and most they may have of its
 own."""
+LITTLE = 0.1
+"""Standard deviations that are not worth another fit."""
 SCOUTS = 3000
 """Depths whose differences are asked first."""
 FEWEST_INDEPENDENT = 8.0
@@ -55,7 +58,7 @@ def settle(surface: Surface, task: Task) -> RayFit | None:
     if whole is None or surface.side > 0:
         return whole
     if whole.likeness.alike < MATCHED:
-        return _fit(whole.surface, task, Sight(limited=True))
+        return _fit(whole.surface, task, Sight(limited=True)) if _hides_much(whole, task.patch) else whole
     differenced = _by_differences(whole, task)
     if differenced is not None:
         return differenced
@@ -83,6 +86,12 @@ def settle(surface: Surface, task: Task) -> RayFit | None:
 
 def _fit(surface: Surface, task: Task, sight: Sight) -> RayFit | None:
     return fine(surface, task.patch, task.units, task.free, sight, task.outlines)
+
+
+def _hides_much(fit: RayFit, patch: Patch) -> bool:
+    """Whether what is seen behind a fit to depths would move it by more than a little of what it may be off."""
+    pull = pull_of(fit.surface, patch, fit.sigma)
+    return float(pull @ fit.covariance @ pull) > LITTLE**2
 
 
 def _by_differences(whole: RayFit, task: Task) -> RayFit | None:

@@ -8,6 +8,7 @@ import numpy as np
 
 from rotrecon.arrays import Bools, Floats, freeze
 from rotrecon.rays.fitting import Outline, Prediction
+from rotrecon.rays.losses import tukey
 from rotrecon.rays.patch import Patch
 from rotrecon.rays.surfaces import Surface
 from rotrecon.rays.traces import Rays
@@ -65,6 +66,13 @@ def seen_behind(surface: Surface, patch: Patch, sigma: float) -> tuple[Passing, 
     border = believed & ~within & (np.abs(gap_m) * patch.focal_px < REACH_PX * nearest_m)
     sigma_px = np.maximum(UNKNOWN_DOUBT * unknown_px[border], BORDER_SIGMA_PX).astype(np.float64)
     return Passing(_rays(believed, patch), patch.focal_px), Outline(_rays(border, patch), sigma_px, patch.focal_px)
+
+
+def pull_of(surface: Surface, patch: Patch, sigma: float) -> Floats:
+    """How what is seen behind a surface pulls at its parameters (k,): the negative gradient of its cost."""
+    limit, border = (measured.predict(surface) for measured in seen_behind(surface, patch, sigma))
+    of_limit, of_border = (one.columns @ (tukey(one.residual)[1] * one.residual) for one in (limit, border))
+    return of_limit + of_border / max(len(border.residual), 1)
 
 
 def _image(pixels: Bools, patch: Patch) -> np.ndarray[Any, np.dtype[np.uint8]]:
