@@ -21,7 +21,7 @@ from app.record.store import Record
 from app.writing import write_file
 from rotrecon.answer import answer, cannot
 from rotrecon.capture import Capture
-from rotrecon.drawing import Constraints, Direction, Drawing, DrawingError
+from rotrecon.drawing import Constraints, Direction, Drawing, DrawingError, ObjectAxis
 from rotrecon.errors import SceneError
 from rotrecon.frame import Frame, FrameUnavailable
 from rotrecon.outcome import FitFailure
@@ -107,7 +107,7 @@ def fit(
     result = reconstruct(frame, drawing, settings)
     if overlay is not None:
         _write_overlay(overlay, result)
-    typer.echo(_json(answer(result)) if json_ else _in_words(result, proposed=axis is None))
+    typer.echo(_json(answer(result)) if json_ else _in_words(result, drawing.axis))
     if isinstance(result.fit, FitFailure):
         raise typer.Exit(CANNOT)
 
@@ -122,9 +122,11 @@ def _radius_m(diameter: str) -> tuple[float, float]:
     return (ends[0] / 2000, ends[-1] / 2000)
 
 
-def _in_words(result: Reconstruction, proposed: bool) -> str:
-    words = describe_result(result)
-    return f"{words}\n  axis proposed: --axis {stroke_text(result.drawing.stroke)}" if proposed else words
+def _in_words(result: Reconstruction, drawn: ObjectAxis | None) -> str:
+    words, stroke = describe_result(result), result.drawing.stroke
+    if stroke == drawn:
+        return words
+    return f"{words}\n  axis {'proposed' if drawn is None else 'put right'}: --axis {stroke_text(stroke)}"
 
 
 def _json(content: dict[str, object]) -> str:

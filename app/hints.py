@@ -53,4 +53,6 @@ def hint(session: Session, led: str | None = None) -> str:
         return led
     if shown.proposed:
         return "Measured. The axis is proposed: drag its ends, or draw another (shift + drag, or choose Axis)."
+    if session.reconstruction is not None and session.reconstruction.drawing.axis != shown.axis:
+        return "Measured along the object's own axis: the one you drew is short of it, or off it."
     return "Measured. Drag the handles to correct the drawing, or draw anew for another object."

@@ -30,7 +30,8 @@ def reconstruct(frame: Frame, drawing: Drawing, settings: Settings) -> Reconstru
     """Measure the object that a drawing points at, by the method that the settings name.
 
     Raises DrawingError for a drawing that cannot be used on this frame; what the data cannot hold is a FitFailure.
-    The drawing of the result has an axis, proposed where none was drawn.
+    The drawing of the result has the axis that was measured along: the drawn one, or where it was careless that put
+    right; one that is proposed where none was drawn.
     """
     drawing = _with_axis(frame, drawing, settings)
     result = _measured(frame, drawing, settings)
@@ -40,7 +41,7 @@ def reconstruct(frame: Frame, drawing: Drawing, settings: Settings) -> Reconstru
     if stroke is None:
         return result
     again = _measured(frame, replace(drawing, axis=stroke), settings)
-    return replace(again, drawing=drawing) if _bears_out(again, result.fit) else result
+    return again if _bears_out(again, result.fit) else result
 
 
 def _bears_out(again: Reconstruction, first: Fit) -> bool:

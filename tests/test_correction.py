@@ -90,7 +90,10 @@ def test_an_object_is_measured_as_if_a_short_stroke_had_been_drawn_over_all_of_i
     start, end = np.array(stroke.start_px), np.array(stroke.end_px)
     short = replace(scene.drawing, axis=ObjectAxis(stroke.start_px, tuple(start + 0.65 * (end - start))))
     whole, result = (reconstruct(scene.frame, drawing, Settings()) for drawing in (scene.drawing, short))
-    assert result.drawing == short, "what was drawn stays as it was drawn"
+    assert result.drawing.stroke != short.stroke, "it says what was measured along"
+    assert result.drawing == replace(short, axis=result.drawing.axis)
+    again = reconstruct(scene.frame, result.drawing, Settings())
+    assert again.drawing == result.drawing, "a stroke that was put right is careful"
     assert len(result.segments.pixel) > 0.9 * len(whole.segments.pixel)
     assert isinstance(whole.fit, Fit)
     assert isinstance(result.fit, Fit)

@@ -136,19 +136,25 @@ def _settled(scene: Scene, held: Held, surface: Surface, outlines: Outlines) -> 
     if depths is None or not outlines:
         return depths
     both = _sound(fine(surface, scene.patch, units, free, depths.sight, outlines))
-    if both is not None and _contradict(depths, both):
+    if both is not None and _contradict(depths, both, np.median(scene.ridge.points_m, axis=0)):
         inner = Sight(guard=INNER_GUARD)
         both = _sound(fine(both.surface, scene.patch, units, free, inner, outlines))
         depths = both and _sound(fine(both.surface, scene.patch, units, free, inner))
     return None if both is None or depths is None else _doubted(scene, both, depths, units)
 
 
-def _contradict(depths: RayFit, both: RayFit) -> bool:
-    """Whether depths alone are so sure of another radius of a cylinder than the outline has that limbs mislead them."""
-    if not isinstance(both.surface, Lateral) or both.surface.tapers:
+def _contradict(depths: RayFit, both: RayFit, place_m: Floats) -> bool:
+    """Whether depths alone are so sure of another radius at a place (3,) than the outline has that limbs mislead."""
+    if not isinstance(depths.surface, Lateral) or not isinstance(both.surface, Lateral):
         return False
-    apart_m = abs(depths.surface.size_m - both.surface.size_m)
-    return apart_m > CONTRADICTED * float(np.sqrt(depths.covariance[4, 4]))
+    height_m = float(depths.surface.heights(place_m[None])[0])
+    alone_m, with_outline_m = (
+        one.radius_m + one.slope * float(one.heights(place_m[None])[0]) for one in (depths.surface, both.surface)
+    )
+    sizes = slice(depths.surface.size_place, None)
+    lever = np.array([1.0, height_m])[: len(depths.free[sizes])]
+    variance = float(lever @ depths.covariance[sizes, sizes] @ lever)
+    return (alone_m - with_outline_m) ** 2 > CONTRADICTED**2 * variance
 
 
 def _doubted(scene: Scene, both: RayFit, depths: RayFit, units: Floats) -> RayFit:

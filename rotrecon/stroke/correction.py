@@ -47,7 +47,8 @@ def corrected(drawing: Drawing, fit: Fit, camera: PinholeCamera) -> ObjectAxis |
     ):
         return None
     reach = np.arange(min(first, INSET_PX), max(last, length_px - INSET_PX), 1.0)[:MOST_PX]
-    places = found[0] + reach[:, None] * along
+    # to a tenth of a pixel, so that the stroke is the same when it is told and given back
+    places = (found[0] + reach[:, None] * along).round(1)
     places = places[_inside(drawing.area, places, camera)]
     if len(places) < 2:
         return None
