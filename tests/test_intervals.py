@@ -11,6 +11,7 @@ from rotrecon.intervals import PLANE_95, SPACE_95, ball_intervals, lateral_inter
 from rotrecon.rays.ball import Ball
 from rotrecon.rays.correlation import Likeness
 from rotrecon.rays.lateral import Lateral
+from rotrecon.rays.limbs import limbs_of, outline_at
 from rotrecon.rays.ray_fit import RayFit, Sight, fine
 from rotrecon.rays.surfaces import Surface, turn_of
 from tests.bodies import CONE, CYLINDER, Knee, body_at, depth_of, drawing_round, noisy_frame, patch_seen
@@ -144,3 +145,21 @@ def test_errors_of_fits_are_as_large_as_their_intervals_say(sigma_px, correlatio
     assert abs(np.mean(errors)) < 0.2
     assert least / 1.96 < np.std(errors) < 1.15 / 1.96
     assert np.mean(np.abs(errors) <= 1) >= 0.88
+
+
+def test_what_a_stretch_of_outline_errs_by_alike_shifts_it_and_hardly_turns_it():
+    body = body_at(CYLINDER, 3)
+    patch = patch_seen(
+        noisy_frame(depth_of(body.solids()), 0, 0.5), drawing_round(body, body.low_m + 0.01, body.high_m - 0.01)
+    )
+    surface = body.lateral()
+    limbs = limbs_of(surface, patch.camera, np.linspace(-0.08, 0.08, 60))
+    independent = outline_at(limbs.point_px, np.full(len(limbs.point_px), 0.2), patch)
+    sides = [np.flatnonzero(limbs.side == side).astype(np.int32) for side in (0, 1)]
+    together = replace(independent, alike=tuple((side, 0.19 / np.sqrt(len(side))) for side in sides))
+    free, units = np.ones(5, dtype=np.bool_), surface.units(0.2)
+    alone, shared = (fine(surface, patch, units, free, Sight(), ((one, 1.0),)) for one in (independent, together))
+    assert alone is not None
+    assert shared is not None
+    assert shared.covariance[4, 4] == pytest.approx(alone.covariance[4, 4], rel=0.05)
+    assert shared.covariance[2, 2] < 0.7 * alone.covariance[2, 2]

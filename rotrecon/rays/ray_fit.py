@@ -117,16 +117,14 @@ def fine(
         share, alike = likeness.independent_share, likeness.alike
         hasty = round_ == 0 and len(pixels) > HASTY_PIXELS
         used = spread(np.arange(len(pixels), dtype=np.int32), HASTY_PIXELS) if hasty else None
-        measurements: list[Measurement] = [depths if used is None else depths.chosen(used)]
-        measurements += [outline for outline, _ in outlines]
-        weights = [(1.0, outline_share) for _, outline_share in outlines]
+        others = list[tuple[Measurement, float]](outlines)
         if sight.limited:
             limit, border = seen_behind(surface, patch, sigma)
-            measurements += [limit, border]
-            weights += [(1.0, 1.0), (1.0, 1.0 / max(len(border), 1))]
+            others += [(limit, 1.0), (border, 1.0 / max(len(border), 1))]
+        measurements = [depths if used is None else depths.chosen(used), *(other for other, _ in others)]
         # those that stand for others have their say
         say = share if used is None else min(share * len(pixels) / len(used), 1.0)
-        weighting = [(sigma, say), *weights]
+        weighting = [(sigma, say), *((1.0, other_share) for _, other_share in others)]
         surface = refine(surface, measurements, weighting, tukey, free, units, FINE_ITERATIONS).surface
         if abs(surface.size_m - size_m) < SETTLED_SIZE * size_m and not hasty:
             break

@@ -64,9 +64,9 @@ def rank(scene: Scene, held: Held) -> tuple[Ranked, ...]:
     ranked = _led(lead, scene, held, followed)
     smoothest = min((one.fit for one in ranked if one.fit), key=lambda fit: fit.sigma)
     if smoothest.sigma < OUTSMOOTHED * lead.sigma:
-        # to the lead that explained nothing all shapes were alike
-        lead = _settled(scene, held, smoothest.surface, outlines) or smoothest
-        ranked = _led(lead, scene, held, followed)
+        # to a lead that explains nothing all shapes are alike
+        other = _settled(scene, held, smoothest.surface, outlines)
+        ranked = ranked if other is None else _led(other, scene, held, followed) or ranked
     best, worst = ranked[0].cost, ranked[-1].cost
     out = [
         Ranked(shape, surface, None, worst - best + cost) for shape, (cost, surface) in found.items() if cost > limit

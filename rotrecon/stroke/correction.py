@@ -6,7 +6,7 @@ from rotrecon.arrays import Bools, Floats
 from rotrecon.camera import PinholeCamera
 from rotrecon.drawing import AreaOfInterest, Drawing, ObjectAxis, area_mask
 from rotrecon.outcome import Fit
-from rotrecon.primitives import Sphere
+from rotrecon.primitives import Primitive, Sphere
 
 LEAST_COVERED = 0.72
 """Share of the object's length that a careful stroke covers at least: ends are no place to draw in."""
@@ -16,7 +16,6 @@ MOST_TURNED_RAD = float(np.deg2rad(4.0))
 """By which it may be turned."""
 INSET_PX = 1.0
 """How far it stays inside the object's ends."""
-
 MOST_PX = 20000
 """Longer than the diagonal of any picture: what is fitted to nothing may be of any length."""
 
@@ -36,16 +35,9 @@ def corrected(drawing: Drawing, fit: Fit, camera: PinholeCamera) -> ObjectAxis |
         return None
     along = (found[1] - found[0]) / length_px
     offset = (drawn - found[0]) @ np.array([[along[0], -along[1]], [along[1], along[0]]])
-    (first, last), beside_px = offset[:, 0], abs(float(offset[:, 1].mean()))
-    covered = min(last, length_px) - max(first, 0.0)
-    turned_rad = abs(np.arctan2(offset[1, 1] - offset[0, 1], last - first))
-    width_px = 2 * float(fit.solid.radius_at(0.0)) * camera.focal_px / float(fit.solid.center_m[2])
-    if (
-        covered >= LEAST_COVERED * length_px
-        and beside_px <= max(MOST_BESIDE * width_px, STEADY_PX)
-        and (turned_rad <= MOST_TURNED_RAD or isinstance(fit.solid, Sphere))
-    ):
+    if _is_careful(offset, length_px, fit.solid, camera):
         return None
+    first, last = offset[:, 0]
     reach = np.arange(min(first, INSET_PX), max(last, length_px - INSET_PX), 1.0)[:MOST_PX]
     # to a tenth of a pixel, so that the stroke is the same when it is told and given back
     places = (found[0] + reach[:, None] * along).round(1)
@@ -54,6 +46,20 @@ def corrected(drawing: Drawing, fit: Fit, camera: PinholeCamera) -> ObjectAxis |
         return None
     (u0, v0), (u1, v1) = places[[0, -1]].tolist()
     return ObjectAxis((u0, v0), (u1, v1))
+
+
+def _is_careful(offset_px: Floats, length_px: float, solid: Primitive, camera: PinholeCamera) -> bool:
+    """Whether a stroke's ends (2, 2), along and across the line it should be on, lie well; a ball has no direction."""
+    first, last = offset_px[:, 0]
+    covered_px = min(last, length_px) - max(first, 0.0)
+    beside_px = abs(float(offset_px[:, 1].mean()))
+    width_px = 2 * float(solid.radius_at(0.0)) * camera.focal_px / float(solid.center_m[2])
+    turned_rad = 0.0 if isinstance(solid, Sphere) else abs(np.arctan2(np.diff(offset_px[:, 1])[0], last - first))
+    return bool(
+        covered_px >= LEAST_COVERED * length_px
+        and beside_px <= max(MOST_BESIDE * width_px, STEADY_PX)
+        and turned_rad <= MOST_TURNED_RAD
+    )
 
 
 def _inside(area: AreaOfInterest, places_px: Floats, camera: PinholeCamera) -> Bools:
