@@ -144,8 +144,11 @@ def _settled(scene: Scene, held: Held, surface: Surface, outlines: Outlines) -> 
 
 
 def _contradict(depths: RayFit, both: RayFit, place_m: Floats) -> bool:
-    """Whether depths alone are so sure of another radius at a place (3,) than the outline has that limbs mislead."""
-    if not isinstance(depths.surface, Lateral) or not isinstance(both.surface, Lateral):
+    """Whether depths alone are so sure of another radius at a place (3,) than the outline has that limbs mislead.
+
+    Where these are left out already they do not.
+    """
+    if not isinstance(depths.surface, Lateral) or not isinstance(both.surface, Lateral) or depths.sight.guard < 1:
         return False
     height_m = float(depths.surface.heights(place_m[None])[0])
     alone_m, with_outline_m = (
