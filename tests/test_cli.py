@@ -233,6 +233,18 @@ def test_fit_proposes_the_axis_that_is_left_out_and_says_so(rotrecon, scene):
     assert again.splitlines()[0] == out.splitlines()[0], "the proposed axis, given, measures the same"
 
 
+def test_fit_puts_a_careless_axis_right_and_says_so(rotrecon, scene):
+    *area, _, axis = drawing_of(scene)
+    (u0, v0), (u1, v1) = (map(float, end.split(",")) for end in axis.split())
+    short = f"{u0:g},{v0:g} {(u0 + u1) / 2:.1f},{(v0 + v1) / 2:.1f}"
+    out = rotrecon("fit", scene, *area, "--axis", short)[1]
+    mended = re.search(r'axis put right: --axis "(.*)"', out)
+    assert mended is not None
+    again = rotrecon("fit", scene, *area, "--axis", mended.group(1))[1]
+    assert "put right" not in again
+    assert again.splitlines()[0] == out.splitlines()[0]
+
+
 def test_a_diameter_that_is_known_and_one_within_limits_are_kept(rotrecon, scene):
     fit = ["fit", scene, *drawing_of(scene), "--json"]
     free = json.loads(rotrecon(*fit)[1])["diameter_mm"]

@@ -19,6 +19,7 @@ from app.hints import hint
 from app.object_drawing import ObjectDrawing
 from app.result_text import hint_html, result_html, why_html
 from app.session import Session, sentence, step
+from rotrecon.drawing import ObjectAxis
 from rotrecon.outcome import Fit
 from rotrecon.reconstruct import reconstruct
 from rotrecon.reconstruction import Reconstruction
@@ -73,6 +74,13 @@ def test_the_hint_tells_of_a_measurement_only_when_it_is_one_of_the_drawing_show
     assert hint(step(refused, HandleMoved("axis", 1, (160.0, 250.0)))).startswith("Measuring")
     dragged = HandleMoved("axis", 1, (160.0, 250.0), finished=False)
     assert hint(step(refused, dragged)) == hint(step(measured[0], dragged)), "it does not flicker during a drag"
+
+
+def test_the_hint_tells_of_an_axis_that_was_put_right(measured: tuple[Session, Reconstruction]) -> None:
+    session, result = measured
+    longer = replace(result, drawing=replace(result.drawing, axis=ObjectAxis((1.0, 2.0), (300.0, 200.0))))
+    assert "the object's own axis" in hint(step(session, Reconstructed(session.revision, longer)))
+    assert "the object's own axis" not in hint(session)
 
 
 def test_thin_evidence_and_refusals_are_said_in_amber(measured: tuple[Session, Reconstruction]) -> None:
