@@ -32,7 +32,7 @@ OFF_PX = 0.75
 """Steps farther off the line are of something else: a handle, a label, a thing behind."""
 BEND_PRIOR = 0.05
 """Weight of no bend against all steps."""
-SYSTEMATIC_SHARE = 0.1
+SYSTEMATIC_SHARE = 0.085
 """Of the blur: what does not average out on rendered pictures, as shading is not linear, and blur no Gaussian."""
 LARGEST_ERROR_PX = 1.25
 """Of a single step, by its likelihood: with more, it may be anywhere among the places tried."""

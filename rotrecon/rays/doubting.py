@@ -15,7 +15,7 @@ CORRECTION_DOUBT = 0.25
 CONE_DOUBT, BALL_DOUBT = 0.1, 0.9
 """The same of a cone, whose depths hold it by more than its size, and of a ball, whose panels and shadows run along its
 outline."""
-ONE_SIDED_DOUBT, TWO_SIDED_DOUBT = 1.25, 0.2
+ONE_SIDED_DOUBT, TWO_SIDED_DOUBT = 1.25, 0.1
 """That of what an outline changes, over the geometric mean of the change and the fit's own standard deviation: where it
 is seen on one side only, which alone says no width, and on both."""
 
@@ -27,9 +27,12 @@ def sizes_of(surface: Surface) -> Floats:
     return np.array([surface.radius_m])
 
 
-def doubting(fit: RayFit, other: RayFit) -> RayFit:
-    """A fit that is less sure of its size by a share of its difference from another, which believes other things."""
-    return _less_sure(fit, _share(fit.surface) * _apart(fit, other))
+def doubting(fit: RayFit, other: RayFit, share: float | None = None) -> RayFit:
+    """A fit that is less sure of its size by a share of its difference from another, which believes other things.
+
+    The share is by default that of its kind of surface.
+    """
+    return _less_sure(fit, (_share(fit.surface) if share is None else share) * _apart(fit, other))
 
 
 def doubting_outline(both: RayFit, depths: RayFit) -> RayFit:

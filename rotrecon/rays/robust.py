@@ -10,7 +10,7 @@ from rotrecon.arrays import Floats
 from rotrecon.rays.coarse_fit import follow
 from rotrecon.rays.doubting import doubting, doubting_outline
 from rotrecon.rays.fitting import Outline, Outlines
-from rotrecon.rays.guard import INNER_GUARD, Task, settle
+from rotrecon.rays.guard import INNER_GUARD, WINDOW_OVER_CORRELATION, Task, settle
 from rotrecon.rays.hypotheses import Held, Scene, coarse_cost, hypotheses
 from rotrecon.rays.lateral import Lateral
 from rotrecon.rays.limbs import SeenOutline, seen_outline
@@ -27,8 +27,11 @@ OTHER_TAPERS_RAD = tuple(np.deg2rad([-7.0, 7.0]))
 """By which a surface may taper more or less than its depths have it."""
 OUTSMOOTHED = 0.5
 """Residuals of another shape over those of the lead at which that one leads instead."""
-CONTRADICTED = 3.0
-"""Standard deviations of the depths' own radius by which an outline may change it before their limbs are left out."""
+CONTRADICTED, CONTRADICTION_DOUBT = 3.0, 0.5
+"""Standard deviations of the depths' own radius by which an outline may change it; and the share of a larger change
+that is doubted, as what was followed may be no outline."""
+THIN_WINDOWS = 2.5
+"""Half the width of objects, in matching windows, whose limbs mislead the depths rather: these are left out then."""
 BEYOND_PX = 1.5
 """How far outside its outline a surface has nothing to do with a depth: nearer, its limb may be off by as much."""
 OUT_OF_QUESTION = 20.0
@@ -137,16 +140,24 @@ def _settled(scene: Scene, held: Held, surface: Surface, outlines: Outlines) -> 
         return depths
     both = _sound(fine(surface, scene.patch, units, free, depths.sight, outlines))
     if both is not None and _contradict(depths, both, np.median(scene.ridge.points_m, axis=0)):
+        if not _is_thin(both, scene):
+            return doubting(both, depths, CONTRADICTION_DOUBT)
         inner = Sight(guard=INNER_GUARD)
         both = _sound(fine(both.surface, scene.patch, units, free, inner, outlines))
         depths = both and _sound(fine(both.surface, scene.patch, units, free, inner))
     return None if both is None or depths is None else _doubted(scene, both, depths, units)
 
 
-def _contradict(depths: RayFit, both: RayFit, place_m: Floats) -> bool:
-    """Whether depths alone are so sure of another radius at a place (3,) than the outline has that limbs mislead.
+def _is_thin(fit: RayFit, scene: Scene) -> bool:
+    """Whether matching windows reach over the limbs of most of an object."""
+    half_width_px = float(np.median(scene.ridge.width_m / scene.ridge.points_m[:, 2])) * scene.patch.focal_px / 2
+    return half_width_px < THIN_WINDOWS * WINDOW_OVER_CORRELATION * fit.likeness.length_px
 
-    Where these are left out already they do not.
+
+def _contradict(depths: RayFit, both: RayFit, place_m: Floats) -> bool:
+    """Whether depths alone are so sure of another radius at a place (3,) than the outline has that one misleads.
+
+    Depths whose limbs are left out already do not.
     """
     if not isinstance(depths.surface, Lateral) or not isinstance(both.surface, Lateral) or depths.sight.guard < 1:
         return False
