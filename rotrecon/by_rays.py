@@ -89,10 +89,7 @@ def _find(scene: Scene, held: Held, segmented: Reconstruction) -> Found | FitFai
     if kind is not None or not isinstance(chosen.surface, Lateral) or not _is_part_only(found, chosen, scene, settings):
         return found
     turned = fit_turned(scene.patch, scene.ridge, chosen.fit)
-    assert chosen.fit is not None
-    if turned is None:
-        return found
-    if not _roughness_over(turned, chosen, scene.patch) < settings.turned_sigma:
+    if turned is None or not _roughness_over(turned, chosen, scene.patch) < settings.turned_sigma:
         return found
     whole = Ranked("revolution", turned.surface, turned, 0.0)
     better = _followed_along((whole, *(replace(one, cost=one.cost + 1.0) for one in ranked)), whole, scene, settings)
