@@ -21,7 +21,7 @@ def bench(
         Path | None, typer.Option(metavar="OUT.md", help="Write how good the paper's method is; takes minutes.")
     ] = None,
     accuracy: Annotated[
-        Path | None, typer.Option(metavar="OUT.md", help="Write how accurate the program is; takes an hour.")
+        Path | None, typer.Option(metavar="OUT.md", help="Write how accurate the program is; takes half an hour.")
     ] = None,
     table2: Annotated[
         Path | None, typer.Option(metavar="OUT.md", help="Write the paper's table 2 again; takes half an hour.")

@@ -23,8 +23,8 @@ CLEAR_SHARE = 0.25
 OUTLINE_SECTIONS, OUTLINE_REACH = 241, 1.5
 """Heights at which the outline is looked for, and how far to both sides of the middle, in lengths of the stroke."""
 BLUR_DOUBT, PIXEL_BLUR_PX = 0.5, 0.5
-"""Standard deviation of where the outline lies in a smeared edge, over the smear, and the blur of pixels alone: focus,
-compression and what a limb reflects smear it more."""
+"""Standard deviation of where the outline lies in a smeared edge, over the smear, and the blur of pixels alone, which
+thin things seem to have most of: focus, compression and what a limb reflects smear it more."""
 FEWEST_LIMBS = 12
 """Fewer limb points are no outline."""
 REACH_SHARE, LEAST_REACH_PX, MOST_REACH_PX = 0.25, 4.0, 10.0
@@ -160,7 +160,7 @@ class SeenOutline:
 
 
 def seen_outline(surface: Surface, patch: Patch, segments: CrossSegments, length_m: float) -> SeenOutline:
-    """The edges in the picture near the outline of a surface, beside a stroke along `length_m` of it."""
+    """The edges in the picture near the outline of a surface, beside a stroke along `length_m` of it; a ball's all."""
     nothing = SeenOutline(None, 0)
     if surface.side > 0 or patch.is_plain:
         return nothing

@@ -23,8 +23,8 @@ MOST_PX = 20000
 def corrected(drawing: Drawing, fit: Fit, camera: PinholeCamera) -> ObjectAxis | None:
     """The stroke that a careful hand had drawn along a measured solid; None where the drawn one is good enough.
 
-    It never ends before the drawn one: how far an object goes is for the operator to say. A stroke that holds the
-    direction of the axis is left as it is.
+    It never ends before the drawn one, and goes on as far as the object was followed in the area. A stroke that holds
+    the direction of the axis is left as it is.
     """
     if drawing.constraints.direction == "drawn":
         return None

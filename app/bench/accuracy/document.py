@@ -44,7 +44,7 @@ class Extent:
 
 
 def accuracy_document(recordings: Path | None = None, extent: Extent | None = None) -> str:
-    """The document; an hour of work on two cores unless a smaller extent is named.
+    """The document; half an hour of work on two cores unless a smaller extent is named.
 
     Raises SceneError for a recording that the folder has not, and PeerMissing for a package that is not installed.
     """

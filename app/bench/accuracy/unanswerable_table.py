@@ -28,7 +28,9 @@ def unanswerable_table(
         rows.append((group, f"{len(part)}", *(f"{count}" for count in counts)))
     wrong = [str(area) for area, words in zip(asked, said, strict=True) if words == "certain"]
     found = f"{len(wrong)} of {len(asked)}" + "".join(f", {name}" for name in wrong)
-    goal = Goal("certain answers where nothing is round", found, f"0 of {FEWEST} or more", not wrong)
+    goal = Goal(
+        "certain answers where nothing is round", found, f"0 of {FEWEST} or more", not wrong and len(asked) >= FEWEST
+    )
     return table(("what is there", "areas", "refused", "answered, not certain", "certain"), rows), [goal]
 
 
