@@ -7,80 +7,28 @@ from hypothesis import strategies as st
 from scipy import ndimage
 
 from rotrecon.camera import PinholeCamera
-from rotrecon.edges.edge_steps import CLEAR_PX
-from rotrecon.edges.edges import LEAST_HALF_WIDTH_PX, Edges, find_edges
+from rotrecon.edges.edges import find_edges
 from rotrecon.edges.light import LINEAR_LIGHT, LightSpline
 from rotrecon.simulation.ideal_drawing import outline_px
 from rotrecon.simulation.simulate import simulate
-
-SIZE = 140
-MIDDLE = np.array([69.3, 70.8])
-LENGTH = 60
-REACH_PX = 6.0
-WOOD, WALL = (0.35, 0.18, 0.08), (0.25, 0.27, 0.28)
-DARK, LIGHT = (0.02, 0.02, 0.03), (0.7, 0.7, 0.65)
-
-
-def covered(distance_px, blur_px):
-    """Share of a blurred pixel inside an edge, at signed distances outside it."""
-    edges = np.linspace(-8, 8, 3201)
-    bell = np.exp(-0.5 * edges**2)
-    return 1 - np.interp(distance_px / blur_px, edges, np.cumsum(bell) / bell.sum())
-
-
-def encoded(light):
-    """Display values of linear light."""
-    light = np.clip(light, 0, 1)
-    srgb = np.where(light <= 0.0031308, 12.92 * light, 1.055 * np.maximum(light, 1e-6) ** (1 / 2.4) - 0.055)
-    return np.rint(255 * srgb).astype(np.uint8)
-
-
-def across_of(angle):
-    return np.array([-np.sin(angle), np.cos(angle)])
-
-
-def distances(angle):
-    """Signed distance of every pixel from a line through the middle."""
-    v, u = np.indices((SIZE, SIZE), dtype=np.float64)
-    return (np.stack([u, v], axis=-1) - MIDDLE) @ across_of(angle)
-
-
-def strip(angle, half_width, inner, outer, blur=0.5):
-    """A straight object of one colour before a background of another, in linear light."""
-    inside = covered(np.abs(distances(angle)) - half_width, blur)[..., None]
-    return inside * np.array(inner) + (1 - inside) * np.array(outer)
-
-
-def sides_of(angle, half_width, shift=0.0, tilt=0.0):
-    """Predicted points and normals of the two sides of a strip, each displaced and turned; and their numbers."""
-    along = np.array([np.cos(angle), np.sin(angle)])
-    steps = np.arange(LENGTH) - (LENGTH - 1) / 2
-    point, normal = [], []
-    for sign in (1.0, -1.0):
-        turned = along + sign * np.tan(tilt) * across_of(angle)
-        point.append(MIDDLE + sign * (half_width + shift) * across_of(angle) + steps[:, None] * turned)
-        normal.append(np.tile(sign * across_of(angle), (LENGTH, 1)))
-    return np.concatenate(point), np.concatenate(normal), np.repeat([0, 1], LENGTH)
-
-
-def found_on(image, angle, half_width, shift=0.0, tilt=0.0) -> Edges:
-    point, normal, side = sides_of(angle, half_width, shift, tilt)
-    return find_edges(image, point, normal, REACH_PX, half_width, side)
-
-
-def mean_of(edges: Edges, rows) -> float:
-    offset, sigma = edges.offset_px[rows], edges.sigma_px[rows]
-    seen = np.isfinite(offset)
-    return float(np.average(offset[seen], weights=sigma[seen] ** -2))
-
-
-def texture(seed, grain, colours=3):
-    """Smooth noise of standard deviation 1, (SIZE, SIZE, colours)."""
-    noise = np.random.default_rng(seed).standard_normal((SIZE, SIZE, colours))
-    frequency = np.fft.fftfreq(SIZE)
-    low_pass = np.exp(-2 * (np.pi * grain) ** 2 * (frequency[:, None] ** 2 + frequency**2))
-    smooth = np.fft.ifft2(np.fft.fft2(noise, axes=(0, 1)) * low_pass[..., None], axes=(0, 1)).real
-    return smooth / smooth.std()
+from tests.strips import (
+    DARK,
+    LENGTH,
+    LIGHT,
+    MIDDLE,
+    REACH_PX,
+    SIZE,
+    WALL,
+    WOOD,
+    covered,
+    distances,
+    encoded,
+    found_on,
+    mean_of,
+    sides_of,
+    strip,
+    texture,
+)
 
 
 @settings(max_examples=30, deadline=None)
@@ -182,54 +130,6 @@ def test_texture_on_either_side_is_no_edge_and_the_error_is_as_stated(seed):
         assert together == pytest.approx(side.sigma_px, rel=0.01)
 
 
-def test_nothing_is_found_where_there_is_nothing():
-    edges = found_on(np.full((SIZE, SIZE, 3), 90, dtype=np.uint8), 0.5, 15)
-    assert np.isnan(edges.offset_px).all()
-    assert not any(side.trusted for side in edges.sides)
-
-
-@pytest.mark.parametrize("grain", [0.0, 1.0, 3.0, 6.0])
-def test_texture_alone_is_not_trusted(grain):
-    trusted = [
-        side.trusted
-        for seed in range(16)
-        for side in found_on(encoded(0.3 * (1 + 0.25 * texture(seed, grain))), 0.5, 15).sides
-    ]
-    assert sum(trusted) <= 3, "32 sides that are not there"
-
-
-@pytest.mark.parametrize(("colour", "stronger"), [((0.29, 0.20, 0.12), False), ((0.22, 0.25, 0.25), True)])
-def test_a_print_that_runs_along_the_inside_is_not_the_outline(colour, stronger):
-    light = strip(0.5, 16, WOOD, WALL)
-    light[np.abs(np.abs(distances(0.5)) - 12) < 1.5] = colour
-    edges = found_on(encoded(light), 0.5, 16)
-    assert np.isnan(edges.offset_px).all() if stronger else np.abs(edges.offset_px).max() < 0.1
-    for side in edges.sides:
-        assert (side.runner_up > side.support) == stronger
-        assert side.trusted != stronger
-
-
-def test_two_lines_of_like_strength_are_told_and_not_trusted():
-    light = strip(0.5, 16, WOOD, WALL)
-    beside = (np.abs(distances(0.5)) > 16) & (np.abs(distances(0.5)) < 19.5)
-    light[beside] = (0.10, 0.10, 0.11)
-    for side in found_on(encoded(light), 0.5, 16).sides:
-        assert side.runner_up > 0.5
-        assert not side.trusted
-
-
-def test_what_hides_a_part_of_a_side_is_left_out():
-    light = strip(0.0, 15, WOOD, WALL)
-    light[70:100, 40:60] = WOOD
-    edges = found_on(encoded(light), 0.0, 15, shift=1.0)
-    column = np.where(np.arange(2 * LENGTH) < LENGTH, sides_of(0.0, 15)[0][:, 0], np.inf)
-    assert np.isnan(edges.offset_px[(column > 43) & (column < 56)]).all()
-    beside = (column < 36) | (column > 63)
-    assert np.abs(edges.offset_px[beside] + 1.0).max() < 0.1
-    assert edges.sides[0].found < edges.sides[1].found == 1.0
-    assert all(side.trusted for side in edges.sides)
-
-
 @pytest.mark.parametrize("radius", [12.0, 40.0])
 def test_a_round_outline_is_moved_and_grown_in_one_piece(radius):
     v, u = np.indices((SIZE, SIZE), dtype=np.float64)
@@ -246,41 +146,6 @@ def test_a_round_outline_is_moved_and_grown_in_one_piece(radius):
     assert edges.sides[0].trusted
     assert np.nanmax(np.abs(edges.offset_px - true)) < 0.1
     assert edges.sides[0].found > 0.95
-
-
-def test_points_at_the_border_and_objects_too_thin_or_short_have_no_edge():
-    image = encoded(strip(0.0, 15, WOOD, WALL))
-    point, normal, side = sides_of(0.0, 15)
-    outside = find_edges(image, point - [0, 75], normal, REACH_PX, 15, side)
-    assert np.isnan(outside.offset_px).all()
-    assert not any(verdict.trusted for verdict in outside.sides)
-    thin = find_edges(image, point, normal, REACH_PX, LEAST_HALF_WIDTH_PX - 0.1, side)
-    assert np.isnan(thin.offset_px).all()
-    assert LEAST_HALF_WIDTH_PX > CLEAR_PX
-    end_on = MIDDLE + 0.1 * (point - MIDDLE)
-    assert np.isnan(find_edges(image, end_on, normal, REACH_PX, 15, side).offset_px).all()
-
-
-def test_sides_come_in_the_order_of_their_numbers():
-    image = encoded(strip(0.0, 15, WOOD, WALL))
-    image[:70] = 90
-    point, normal, side = sides_of(0.0, 15)
-    below, above = find_edges(image, point, normal, REACH_PX, 15, side).sides
-    assert below.trusted
-    assert not above.trusted
-    swapped = find_edges(image, point, normal, REACH_PX, 15, 5 - side).sides
-    assert swapped == (above, below)
-
-
-def test_callers_mistakes_raise():
-    image = np.zeros((SIZE, SIZE, 3), dtype=np.uint8)
-    point, normal, side = sides_of(0.0, 15)
-    with pytest.raises(ValueError, match="points and normals"):
-        find_edges(image, point, normal[:5], REACH_PX, 15, side)
-    with pytest.raises(ValueError, match="points and normals"):
-        find_edges(image, point, normal, REACH_PX, 15, side[:5])
-    with pytest.raises(ValueError, match="reach"):
-        find_edges(image, point, normal, 0.0, 15, side)
 
 
 def test_the_sides_of_a_rendered_object():

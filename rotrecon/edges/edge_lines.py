@@ -127,8 +127,11 @@ def filtered(values: NDArray[np.floating[Any]], down: Floats, right: Floats = ON
     return np.asarray(result, dtype=np.float64)
 
 
-def find_line(picture: NDArray[np.float32], stretch: Stretch, reach_px: float) -> Line:
-    """The outermost well supported line of edges within reach; `picture` is (H, W, 3) in display values."""
+def find_line(picture: NDArray[np.float32], stretch: Stretch, reach_px: float, spread_px: float) -> Line:
+    """The outermost well supported line of edges within reach; `picture` is (H, W, 3) in display values.
+
+    Of others what is farther from the prediction counts less, by Cauchy's distribution of a spread.
+    """
     votes, shapes = _votes(picture, stretch, reach_px), stretch.shapes
     shift, bend = _moves(stretch, reach_px)
     rows = np.linspace(0, len(stretch) - 1, min(len(stretch), ROWS)).round().astype(np.intp)
@@ -141,7 +144,9 @@ def find_line(picture: NDArray[np.float32], stretch: Stretch, reach_px: float) -
     start = shapes @ np.array([shift[chosen], *bend[support[chosen].argmax()]])
     offset = onto_edges(votes.across_px, votes.place_px, votes.share, shapes, start)
     others = np.where(np.abs(votes.across_px - offset[rows, None]) < SAME_LINE_PX, 0.0, votes.share[rows])
-    return Line(offset, float(best[chosen]), float(support_of(others, shift / STEP_PX, places).max()))
+    credit = np.minimum((1 + (shift[chosen] / spread_px) ** 2) / (1 + (shift / spread_px) ** 2), 1.0)
+    runner_up = credit * support_of(others, shift / STEP_PX, places).max(axis=1)
+    return Line(offset, float(best[chosen]), float(runner_up.max()))
 
 
 def _votes(picture: NDArray[np.float32], stretch: Stretch, reach_px: float) -> _Votes:

@@ -30,13 +30,17 @@ ALONG_PX = 4.0
 """Standard deviation of the average of log-likelihoods along the outline: a profile alone is lost in texture."""
 OFF_PX = 0.75
 """Steps farther off the line are of something else: a handle, a label, a thing behind."""
+NARROWING_PX = (2.0, 1.0, OFF_PX, OFF_PX)
+"""Distances up to which steps have a say in their line, at first of all places tried."""
 BEND_PRIOR = 0.05
 """Weight of no bend against all steps."""
 SYSTEMATIC_SHARE = 0.085
 """Of the blur: what does not average out on rendered pictures, as shading is not linear, and blur no Gaussian."""
+LOCAL_ERROR_PX = 0.09
+"""What the steps of `CORRELATED_PX` err by together, however clear they are (measured on rendered pictures)."""
 LARGEST_ERROR_PX = 1.25
 """Of a single step, by its likelihood: with more, it may be anywhere among the places tried."""
-CAUTION = 1.5
+CAUTION = 1.25
 """Factor on the scatter: that of three colours, and of a texture which may run all along the outline."""
 
 
@@ -102,13 +106,15 @@ def _steps(profiles: Profiles, model: Model, blur_px: float) -> Steps:
     away, curvature = _vertex(before, here, after)
     place, weight = PLACES_PX[top] + apart * away, curvature / apart**2
     found = (here >= before) & (here >= after) & (weight > LARGEST_ERROR_PX**-2) & (stepped > 0.5)
+    correlated = CORRELATED_PX / spacing
+    weight /= 1 + weight * correlated * LOCAL_ERROR_PX**2
     line = _line(profiles.stretch.shapes, place, weight * found)
     found &= np.abs(place - line) < OFF_PX
     if not found.any():
         nothing = np.full(len(place), np.nan)
         return Steps(nothing, nothing, model.contrast, np.inf, blur_px, profiles.line.offset_px)
     total = float(weight[found].sum())
-    scatter = _scatter(np.where(found, weight * (place - line), 0.0), round(CORRELATED_PX / spacing)) / total**2
+    scatter = _scatter(np.where(found, weight * (place - line), 0.0), round(correlated)) / total**2
     scatter += _disagreement(by_channel[:, :, found], line[found])
     sigma = float(np.sqrt((SYSTEMATIC_SHARE * blur_px) ** 2 + CAUTION**2 * scatter))
     offset = np.where(found, profiles.line.offset_px + place, np.nan)
@@ -119,7 +125,7 @@ def _steps(profiles: Profiles, model: Model, blur_px: float) -> Steps:
 def _line(shapes: Floats, place: Floats, weight: Floats) -> Floats:
     """The line (N,) through most of the steps (N,): biweight, ever narrower."""
     line = np.zeros(len(place))
-    for width in (1.0, OFF_PX, OFF_PX, OFF_PX):
+    for width in NARROWING_PX:
         trusted = weight * (1 - ((place - line) / width) ** 2).clip(0, 1) ** 2
         line = smooth_line(shapes, trusted, place, UNHELD, BEND_PRIOR * float(trusted.sum()) + UNHELD)
     return line

@@ -27,8 +27,10 @@ LEAST_LENGTH_PX = 8.0
 """Of a stretch: twice the distance over which steps are averaged."""
 LEAST_SUPPORT = 0.33
 """Of a line to be trusted: half the lines through texture alone have less."""
-RUNNER_UP_SHARE = 0.6
+RUNNER_UP_SHARE = 0.52
 """Of the support, what a second line may have beside one that is trusted."""
+SPREAD_REACHES = 1.5
+"""Reaches within which one line is about as likely as another, unless more is known: depths may have drifted."""
 LEAST_FOUND = 0.6
 """Share of the points with an edge on a line to be trusted."""
 MOVED_PX, MOVES, FARTHEST_PX = 0.2, 6, 2.5
@@ -118,14 +120,16 @@ def find_edges(
     reach_px: float,
     half_width_px: ArrayLike,
     side: NDArray[np.integer[Any]] | None = None,
+    spread_px: float | None = None,
 ) -> Edges:
     """The outline of an object in a picture (H, W, 3), sRGB, near predicted points (N, 2) in order along it.
 
     `normal_px` (N, 2) are unit vectors away from the object, `half_width_px` (N,) is half the object's width there,
     `reach_px` is how far the prediction may be off. `side` (N,) numbers the stretches, each of which is one smooth line
     close to parallel to its points: the two limbs of a cylinder, or all of a ball's circle. Its `Side` says whether
-    what was found there is the outline. Points 1 to 2 px apart are enough. ValueError for shapes that do not fit, and
-    for a reach that is not positive.
+    what was found there is the outline. A line `spread_px` off the prediction, by default more than the reach, is half
+    as likely to be it as one nearer. Points 1 to 2 px apart are enough. ValueError for shapes that do not fit, and for
+    a reach that is not positive.
     """
     half_width = np.broadcast_to(np.asarray(half_width_px, dtype=np.float64), len(point_px))
     numbers = np.zeros(len(point_px), dtype=np.int64) if side is None else side
@@ -143,7 +147,7 @@ def find_edges(
     clear: list[tuple[Indices, Stretch, Line]] = []
     for rows in read:
         stretch = Stretch(point_px[rows] - crop.low_px, normal_px[rows], half_width[rows])
-        line = find_line(crop.picture, stretch, reach_px)
+        line = find_line(crop.picture, stretch, reach_px, spread_px or SPREAD_REACHES * reach_px)
         sides[int(numbers[rows[0]])] = replace(NOTHING, support=line.support, runner_up=line.runner_up)
         if line.support >= LEAST_SUPPORT and line.runner_up <= RUNNER_UP_SHARE * line.support:
             clear.append((rows, stretch, line))

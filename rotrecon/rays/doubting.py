@@ -12,12 +12,15 @@ from rotrecon.rays.surfaces import Surface
 
 CORRECTION_DOUBT = 0.25
 """Standard deviation of what one way to a size changes, over the change: neither way is without error."""
-CONE_DOUBT, BALL_DOUBT = 0.1, 0.9
+CONE_DOUBT, BALL_DOUBT = 0.1, 1.1
 """The same of a cone, whose depths hold it by more than its size, and of a ball, whose panels and shadows run along its
 outline."""
-ONE_SIDED_DOUBT, TWO_SIDED_DOUBT = 1.25, 0.1
+ONE_SIDED_DOUBT, TAPERED_DOUBT, TWO_SIDED_DOUBT = 1.25, 0.1, 0.016
 """That of what an outline changes, over the geometric mean of the change and the fit's own standard deviation: where it
-is seen on one side only, which alone says no width, and on both."""
+is seen on one side only, which alone says no width; on both of a cone; and on both of a cylinder half of which is one
+matching window wide."""
+MOST_WINDOWS = 6.0
+"""Beyond so many, depths tell no more of a width."""
 
 
 def sizes_of(surface: Surface) -> Floats:
@@ -35,11 +38,12 @@ def doubting(fit: RayFit, other: RayFit, share: float | None = None) -> RayFit:
     return _less_sure(fit, (_share(fit.surface) if share is None else share) * _apart(fit, other))
 
 
-def doubting_outline(both: RayFit, depths: RayFit) -> RayFit:
+def doubting_outline(both: RayFit, depths: RayFit, windows: float) -> RayFit:
     """A fit to depths and an outline that is less sure of its radius by some of what the outline changes.
 
     What depths alone are off by says less, the more of the fit's own standard deviations it is: an outline seen on both
-    sides is as wide as the object, whatever they are worth, and converges as the object does.
+    sides is as wide as the object, whatever they are worth, and converges as the object does. They are worth the more,
+    the more matching `windows` half of the object is wide.
     """
     if isinstance(both.surface, Ball):
         return doubting(both, depths)
@@ -47,7 +51,10 @@ def doubting_outline(both: RayFit, depths: RayFit) -> RayFit:
     own = float(np.sqrt(both.covariance[both.surface.size_place, both.surface.size_place]))
     radius_only = np.arange(len(sizes_of(both.surface))) == 0
     apart = np.sqrt(own * np.abs(_apart(both, depths))) * radius_only
-    return _less_sure(both, (TWO_SIDED_DOUBT if sides > 1 else ONE_SIDED_DOUBT) * apart)
+    if sides == 1:
+        return _less_sure(both, ONE_SIDED_DOUBT * apart)
+    tapers = len(radius_only) > 1
+    return _less_sure(both, (TAPERED_DOUBT if tapers else TWO_SIDED_DOUBT * min(windows, MOST_WINDOWS) ** 2) * apart)
 
 
 def _apart(fit: RayFit, other: RayFit) -> Floats:

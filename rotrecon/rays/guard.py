@@ -141,4 +141,5 @@ def _as_large(fit: RayFit, inner: RayFit) -> bool:
 
 
 def _odd(value: float) -> int:
-    return 2 * int(value / 2) + 1
+    """The odd number nearest to a value, of two the smaller."""
+    return 2 * int(np.ceil(value / 2)) - 1

@@ -103,14 +103,14 @@ def _following(
     if seen.edges is None:
         return (), found
     found = _followed(scene, held, found, seen.edges)
-    again = _seen(scene, min(found.values(), key=itemgetter(0))[1])
+    again = _seen(scene, min(found.values(), key=itemgetter(0))[1], followed=True)
     if again.edges is None or again.sides < seen.sides:
         return ((seen.edges, 1.0),), found
     return ((again.edges, 1.0),), _followed(scene, held, found, again.edges)
 
 
-def _seen(scene: Scene, surface: Surface) -> SeenOutline:
-    return seen_outline(surface, scene.patch, scene.segments, scene.length_m)
+def _seen(scene: Scene, surface: Surface, followed: bool = False) -> SeenOutline:
+    return seen_outline(surface, scene.patch, scene.segments, scene.length_m, followed)
 
 
 def _tapered(surface: Surface) -> list[Surface]:
@@ -140,7 +140,7 @@ def _settled(scene: Scene, held: Held, surface: Surface, outlines: Outlines) -> 
         return depths
     both = _sound(fine(surface, scene.patch, units, free, depths.sight, outlines))
     if both is not None and _contradict(depths, both, np.median(scene.ridge.points_m, axis=0)):
-        if not _is_thin(both, scene):
+        if _windows(both, scene) >= THIN_WINDOWS:
             return doubting(both, depths, CONTRADICTION_DOUBT)
         inner = Sight(guard=INNER_GUARD)
         both = _sound(fine(both.surface, scene.patch, units, free, inner, outlines))
@@ -148,10 +148,11 @@ def _settled(scene: Scene, held: Held, surface: Surface, outlines: Outlines) -> 
     return None if both is None or depths is None else _doubted(scene, both, depths, units)
 
 
-def _is_thin(fit: RayFit, scene: Scene) -> bool:
-    """Whether matching windows reach over the limbs of most of an object."""
+def _windows(fit: RayFit, scene: Scene) -> float:
+    """How many matching windows half of an object is wide; infinite where errors are not alike."""
     half_width_px = float(np.median(scene.ridge.width_m / scene.ridge.points_m[:, 2])) * scene.patch.focal_px / 2
-    return half_width_px < THIN_WINDOWS * WINDOW_OVER_CORRELATION * fit.likeness.length_px
+    window_px = WINDOW_OVER_CORRELATION * fit.likeness.length_px
+    return half_width_px / window_px if window_px > 0 else np.inf
 
 
 def _contradict(depths: RayFit, both: RayFit, place_m: Floats) -> bool:
@@ -173,7 +174,7 @@ def _contradict(depths: RayFit, both: RayFit, place_m: Floats) -> bool:
 
 def _doubted(scene: Scene, both: RayFit, depths: RayFit, units: Floats) -> RayFit:
     """A fit to depths and outline that doubts what the outline changes, and what the limbs as they are would change."""
-    doubted = doubting_outline(both, depths)
+    doubted = doubting_outline(both, depths, _windows(both, scene))
     if depths.sight.whole:
         return doubted
     whole = _sound(fine(both.surface, scene.patch, units, both.free, Sight(), both.outlines))
