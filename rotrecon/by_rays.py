@@ -119,8 +119,7 @@ def _roughness_over(turned: RayFit, chosen: Ranked, patch: Patch) -> float:
 
 def _interval_over_size(ranked: Ranked) -> float:
     """Width of the interval of a shape's diameter over the diameter."""
-    low_m, high_m = intervals_of(ranked, 0.0, None).diameter_m
-    return 2 * (high_m - low_m) / (high_m + low_m)
+    return intervals_of(ranked, 0.0, None).relative_width
 
 
 def _followed_along(ranked: tuple[Ranked, ...], chosen: Ranked, scene: Scene, settings: Settings) -> Found | FitFailure:

@@ -57,9 +57,12 @@ def reconstruction_of(segmented: Reconstruction, found: Found, radii: SectionRad
     margin = candidates[0].score - max((other.score for other in candidates[1:]), default=0.0)
     doubts = found.doubts + doubts_of(chosen, found.soundness, intervals, radii.circles.state, scene, settings)
     rivals = [one for one in found.ranked if one is not chosen and is_possible(one, chosen, settings)]
-    low_m, high_m = intervals.diameter_m
-    narrow = high_m - low_m <= settings.certain_interval * (high_m + low_m) / 2
-    certain = narrow and not doubts and not rivals and chosen.shape != "revolution"
+    certain = (
+        intervals.relative_width <= settings.certain_interval
+        and not doubts
+        and not rivals
+        and chosen.shape != "revolution"
+    )
     T_base_camera = segmented.frame.T_base_camera
     fit = Fit(
         solid=solid,

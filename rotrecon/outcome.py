@@ -53,6 +53,12 @@ class Intervals:
     length_m: Range | None = None
     """None for a sphere, or where an end is open."""
 
+    @property
+    def relative_width(self) -> float:
+        """Width of the diameter's interval over its middle."""
+        low_m, high_m = self.diameter_m
+        return 2 * (high_m - low_m) / (high_m + low_m)
+
 
 @dataclass(frozen=True)
 class Candidate:

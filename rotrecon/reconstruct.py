@@ -24,6 +24,8 @@ from rotrecon.stroke.correction import corrected
 from rotrecon.workspace import available
 
 THREADS = ThreadpoolController()
+MUCH_LESS_SURE = 3.0
+"""Width of a size's interval, over that of a first measurement, with which a second one is not believed."""
 
 
 def reconstruct(frame: Frame, drawing: Drawing, settings: Settings) -> Reconstruction:
@@ -45,8 +47,14 @@ def reconstruct(frame: Frame, drawing: Drawing, settings: Settings) -> Reconstru
 
 
 def _bears_out(again: Reconstruction, first: Fit) -> bool:
-    """Whether a second measurement found the same kind of thing, and doubts it no more."""
-    if not isinstance(again.fit, Fit) or len(again.fit.doubts) > len(first.doubts):
+    """Whether a second measurement found the same kind of thing, and either doubts it no more or knows its size better.
+
+    One that knows much less of its size has lost what the first rests on.
+    """
+    if not isinstance(again.fit, Fit) or again.fit.intervals is None or first.intervals is None:
+        return False
+    width, first_width = again.fit.intervals.relative_width, first.intervals.relative_width
+    if width > MUCH_LESS_SURE * first_width or (len(again.fit.doubts) > len(first.doubts) and width > first_width):
         return False
     kinds = {again.fit.solid.kind, first.solid.kind}
     return len(kinds) == 1 or kinds == {"cylinder", "rod"}

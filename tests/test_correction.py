@@ -10,9 +10,10 @@ from hypothesis import strategies as st
 
 from app.bench.accuracy.misdrawn import STROKES, misdrawn, width_px
 from rotrecon.drawing import Constraints, Drawing, ObjectAxis, area_mask
-from rotrecon.outcome import Fit
+from rotrecon.outcome import Fit, Intervals
 from rotrecon.primitives import Frustum, Sphere
 from rotrecon.reconstruct import reconstruct
+from rotrecon.reconstruction import Reconstruction
 from rotrecon.settings import Settings
 from rotrecon.simulation.ideal_drawing import ideal_drawing
 from rotrecon.simulation.simulate import DEFAULT_CAMERA, simulate
@@ -84,6 +85,28 @@ def test_whatever_was_found_a_corrected_stroke_lies_in_the_area(center, tilt, ro
     if stroke is not None:
         column, row = np.floor(np.array([stroke.start_px, stroke.end_px]) + 0.5).astype(int).T
         assert area_mask(drawing.area, SIZE)[row, column].all()
+
+
+@pytest.mark.parametrize(
+    ("width", "doubts", "believed"), [(1.0, 0, True), (2.9, 0, True), (3.1, 0, False), (0.9, 1, True), (1.1, 1, False)]
+)
+def test_a_second_measurement_that_knows_less_is_not_believed(monkeypatch, width, doubts, believed):
+    """Such as one that no longer sees a side of the outline."""
+
+    def measured(mm: float, relative: float, doubts: int) -> Reconstruction:
+        solid = replace(SOLIDS["pipe"], radius_m=mm / 2000)
+        intervals = Intervals((mm / 1000 * (1 - relative / 2), mm / 1000 * (1 + relative / 2)), 0.001)
+        return replace(result, fit=replace(fit_of(solid), intervals=intervals, doubts=("a reason",) * doubts))
+
+    scene = simulate("pipe", 0, noise=None, supersampling=0)
+    short = misdrawn(scene.drawing, width_px(scene.drawing), SIZE)["axis 30 % short"]
+    result = reconstruct(scene.frame, scene.drawing, Settings())
+    answers = iter([measured(100, 0.02, 0), measured(101, 0.02 * width, doubts)])
+    monkeypatch.setattr("rotrecon.reconstruct._measured", lambda *_: next(answers))
+    monkeypatch.setattr("rotrecon.reconstruct.corrected", lambda *_: scene.drawing.stroke)
+    found = reconstruct(scene.frame, short, Settings()).fit
+    assert isinstance(found, Fit)
+    assert (found.solid.radius_m == 0.0505) == believed
 
 
 def test_an_object_is_measured_as_if_a_short_stroke_had_been_drawn_over_all_of_it():
