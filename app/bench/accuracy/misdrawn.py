@@ -10,7 +10,7 @@ import numpy as np
 
 from app.bench.accuracy.clouds import CORRELATED, FULL_MODEL, Cell, cloud_of, pose_of
 from app.bench.accuracy.outcome import TRUE_KINDS, radius_at
-from app.bench.accuracy.trials import in_processes
+from app.bench.accuracy.trials import SUPERSAMPLING, in_processes
 from rotrecon.arrays import Floats
 from rotrecon.drawing import AreaOfInterest, Drawing, ObjectAxis
 from rotrecon.frame import Frame
@@ -125,7 +125,7 @@ def _of_pose(method: Method, task: tuple[str, int]) -> list[Movement]:
     name, seed = task
     settings, found = Settings(method=method), list[Movement]()
     for cell in CELLS:
-        pose = pose_of(name, seed, supersampling=int(cell == FULL_MODEL))
+        pose = pose_of(name, seed, SUPERSAMPLING if cell == FULL_MODEL else 0)
         drawing = pose.simulated.drawing
         moved = moved_by_mistakes(cloud_of(pose, cell).frame, drawing, width_px(drawing), settings)
         found += [Movement(name, cell, mistake, *by) for mistake, by in moved.items()]
