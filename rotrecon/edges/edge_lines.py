@@ -167,7 +167,8 @@ def _moves(stretch: Stretch, reach_px: float) -> tuple[Floats, Floats]:
         moves = np.arange(-reach_px, reach_px + ROUND_STEP_PX / 2, ROUND_STEP_PX)
         return moves, _pairs(moves, moves)
     half_length = stretch.spacing_px * len(stretch) / 2
-    count = int(np.ceil(np.tan(TILT_RAD) * half_length / STEP_PX))
+    # a line whose ends are out of reach is another's
+    count = int(np.ceil(min(np.tan(TILT_RAD) * half_length, reach_px) / STEP_PX))
     tilts, sags = STEP_PX * np.arange(-count, count + 1, dtype=np.float64), np.array([-SAG_PX, 0.0, SAG_PX])
     return np.arange(-reach_px, reach_px + STEP_PX / 2, STEP_PX), _pairs(tilts, sags)
 

@@ -138,7 +138,7 @@ def mask_outline(
     gap_px = np.concatenate(gaps)
     if len(gap_px) < CLEAR_SHARE * 2 * found.sum():
         return None
-    return outline_at(np.concatenate(places), np.maximum(MASK_SIGMA_PX, gap_px), patch)
+    return outline_at(np.concatenate(places), np.maximum(MASK_SIGMA_PX, gap_px / 2), patch)
 
 
 def outline_at(point_px: Floats, sigma_px: Floats, patch: Patch) -> Outline:
