@@ -12,7 +12,7 @@ from rotrecon.rays.ball import Ball
 from rotrecon.rays.coarse_fit import coarse, coarse_pixels
 from rotrecon.rays.fitting import Outline
 from rotrecon.rays.lateral import Lateral
-from rotrecon.rays.limbs import WIDEST_GAP_PX, mask_outline
+from rotrecon.rays.limbs import mask_outline
 from rotrecon.rays.losses import cauchy
 from rotrecon.rays.patch import Patch
 from rotrecon.rays.ray_fit import depths_of, spread
@@ -79,7 +79,7 @@ def scene_of(camera: PinholeCamera, patch: Patch, segments: CrossSegments, kept:
     edge = ridge(camera, depth_m, segments, kept)
     length_m = float(np.linalg.norm(np.ptp(together(edge.points_m), axis=0))) if len(edge.points_m) else 0.0
     usable = segments.inside & np.isfinite(depth_m)
-    outline = mask_outline(segments, kept, usable, patch, WIDEST_GAP_PX)
+    outline = mask_outline(segments, kept, usable, patch)
     seen_m = np.where(kept, depth_m, np.nan)
     return Scene(patch, edge, coarse_pixels(patch, segments, kept), outline, length_m, segments, seen_m)
 

@@ -113,12 +113,10 @@ def _of_ball(ball: Ball) -> tuple[Floats, Floats, Indices, Floats]:
     return ball.center_m + ball.radius_m * normals, normals, arc, angle
 
 
-def mask_outline(
-    segments: CrossSegments, kept: Bools, usable: Bools, patch: Patch, widest_gap_px: float
-) -> Outline | None:
+def mask_outline(segments: CrossSegments, kept: Bools, usable: Bools, patch: Patch) -> Outline | None:
     """The rays at which the segmented (S, W) object gives way to other usable (S, W) pixels, section by section.
 
-    Where depth is unknown between the two, over no more than a gap, the edge may be anywhere in it. None when most
+    Where depth is unknown between the two, over no wide gap, the edge may be anywhere in it. None when most
     sections end at the area's border, or in wider gaps.
     """
     columns: Indices = np.arange(kept.shape[1], dtype=np.int32)
@@ -130,7 +128,7 @@ def mask_outline(
         first = object_.argmax(axis=1)
         last_other = np.maximum.accumulate(np.where(other, columns, -1), axis=1)[np.arange(len(first)), first]
         gap = first - last_other
-        clear = found & (last_other >= 0) & (gap <= widest_gap_px)
+        clear = found & (last_other >= 0) & (gap <= WIDEST_GAP_PX)
         column = (first + last_other) / 2 if turned > 0 else kept.shape[1] - 1 - (first + last_other) / 2
         across = (segments.first_offset_px + column[clear])[:, None] * segments.across
         places.append(segments.origin_px + np.flatnonzero(clear)[:, None] * segments.along + across)
