@@ -81,7 +81,7 @@ class Settings:
     """The same for a kind that is certain: what is known so badly may be something else."""
     covered_length: float = 0.7
     """Share of the object's length that a cylinder or a cone must explain not to be a part of something longer."""
-    turned_sigma: float = 0.85
+    turned_sigma: float = 0.6
     """Residuals of a general surface of revolution over those of a cylinder or cone that it takes the place of."""
     turned_inlier_share: float = 0.85
     """Of the depths inside the outline, those that must agree with a general surface of revolution."""

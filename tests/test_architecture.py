@@ -32,7 +32,7 @@ FITTED = """
     rays.coarse_fit rays.starts
     edges.light edges.line_loops edges.edge_lines edges.shading edges.step_likelihood edges.edge_model
     edges.edge_steps edges.edges
-    rays.limbs rays.guard rays.hypotheses rays.robust
+    rays.limbs rays.guard rays.hypotheses rays.outlined_fit rays.robust
 """.split()
 TURNED = """
     rays.lines turned.turned extent turned.look_rays turned.looks turned.height_radii turned.profile

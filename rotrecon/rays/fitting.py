@@ -145,6 +145,21 @@ class Outline:
         rays = np.ascontiguousarray(self.rays[:, index])
         return Outline(rays, self.sigma_px[index], self.focal_px)
 
+    def offsets_px(self, surface: Surface) -> Floats:
+        """(S,) how far each stretch passes inside a surface, on average."""
+        residual, weight = self.predict(surface).residual, 1 / self.sigma_px
+        return np.array(
+            [float(residual[one] @ weight[one]) / float(weight[one] @ weight[one]) for one, _ in self.alike]
+        )
+
+    def less_sure(self, by_px: Floats) -> "Outline":
+        """The same, where all edges of a stretch err alike by so much more, px (S,)."""
+        sigma_px, alike = self.sigma_px.copy(), list[tuple[Indices, float]]()
+        for (stretch, alike_px), more_px in zip(self.alike, by_px.tolist(), strict=True):
+            sigma_px[stretch] = np.sqrt(sigma_px[stretch] ** 2 + len(stretch) * more_px**2)
+            alike.append((stretch, float(np.hypot(alike_px, more_px))))
+        return replace(self, sigma_px=sigma_px, alike=tuple(alike))
+
 
 Outlines = tuple[tuple[Outline, float], ...]
 """Each with the share of its edges that is independent."""

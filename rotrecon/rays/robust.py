@@ -6,16 +6,14 @@ from typing import Literal
 
 import numpy as np
 
-from rotrecon.arrays import Floats
 from rotrecon.rays.coarse_fit import follow
-from rotrecon.rays.doubting import doubting, doubting_outline
 from rotrecon.rays.fitting import Outline, Outlines
-from rotrecon.rays.guard import INNER_GUARD, WINDOW_OVER_CORRELATION, Task, settle
 from rotrecon.rays.hypotheses import Held, Scene, coarse_cost, hypotheses
 from rotrecon.rays.lateral import Lateral
-from rotrecon.rays.limbs import SeenOutline, seen_outline
+from rotrecon.rays.limbs import NOTHING_SEEN, SeenOutline, seen_outline
 from rotrecon.rays.losses import TUKEY, tukey
-from rotrecon.rays.ray_fit import RayFit, Sight, fine, predicted
+from rotrecon.rays.outlined_fit import doubted, settled, sound
+from rotrecon.rays.ray_fit import RayFit, fine, predicted
 from rotrecon.rays.surfaces import Surface
 from rotrecon.sections.radii import Shape
 
@@ -27,11 +25,6 @@ OTHER_TAPERS_RAD = tuple(np.deg2rad([-7.0, 7.0]))
 """By which a surface may taper more or less than its depths have it."""
 OUTSMOOTHED = 0.5
 """Residuals of another shape over those of the lead at which that one leads instead."""
-CONTRADICTED, CONTRADICTION_DOUBT = 3.0, 0.5
-"""Standard deviations of the depths' own radius by which an outline may change it; and the share of a larger change
-that is doubted, as what was followed may be no outline."""
-THIN_WINDOWS = 2.5
-"""Half the width of objects, in matching windows, whose limbs mislead the depths rather: these are left out then."""
 BEYOND_PX = 1.5
 """How far outside its outline a surface has nothing to do with a depth: nearer, its limb may be off by as much."""
 OUT_OF_QUESTION = 20.0
@@ -61,14 +54,14 @@ def rank(scene: Scene, held: Held) -> tuple[Ranked, ...]:
     worth: dict[Shape, tuple[float, Surface]] = {shape: found[shape] for shape in promising}
     outlines, followed = _following(scene, held, worth)
     order = sorted(followed, key=lambda shape: followed[shape][0] + PARAMETERS[shape])
-    lead = next((fit for shape in order if (fit := _settled(scene, held, followed[shape][1], outlines))), None)
+    lead = next((fit for shape in order if (fit := settled(scene, held, followed[shape][1], outlines))), None)
     if lead is None or not np.isfinite(lead.covariance).all():
         return ()
     ranked = _led(lead, scene, held, followed)
     smoothest = min((one.fit for one in ranked if one.fit), key=lambda fit: fit.sigma)
     if smoothest.sigma < OUTSMOOTHED * lead.sigma:
         # to a lead that explains nothing all shapes are alike
-        other = _settled(scene, held, smoothest.surface, outlines)
+        other = settled(scene, held, smoothest.surface, outlines)
         ranked = ranked if other is None else _led(other, scene, held, followed) or ranked
     best, worst = ranked[0].cost, ranked[-1].cost
     out = [
@@ -95,16 +88,17 @@ def _following(
     It is looked for again from the best surface then: what it looks like from there hangs less on the drawing.
     """
     order = [surface for _, surface in sorted(found.values(), key=itemgetter(0))]
-    seen = SeenOutline(None, 0)
+    seen = NOTHING_SEEN
     for surface in (*order, *_tapered(order[0])):
-        if seen.sides >= 2:
+        if len(seen.sides) >= 2:
             break
         seen = max(seen, _seen(scene, surface), key=lambda one: one.rank)
     if seen.edges is None:
         return (), found
     found = _followed(scene, held, found, seen.edges)
-    again = _seen(scene, min(found.values(), key=itemgetter(0))[1], followed=True)
-    if again.edges is None or again.sides < seen.sides:
+    best = min(found.values(), key=itemgetter(0))[1]
+    again = _seen(scene, best, followed=True).doubting(seen, best)
+    if again.edges is None or len(again.sides) < len(seen.sides):
         return ((seen.edges, 1.0),), found
     return ((again.edges, 1.0),), _followed(scene, held, found, again.edges)
 
@@ -132,60 +126,6 @@ def _followed(
     return followed
 
 
-def _settled(scene: Scene, held: Held, surface: Surface, outlines: Outlines) -> RayFit | None:
-    """The fit to the depths that can be believed, then to the outline with them; it doubts what the two differ by."""
-    units, free = surface.units(scene.length_m), held.free(surface)
-    depths = _sound(settle(surface, Task(scene.patch, units, free, ())))
-    if depths is None or not outlines:
-        return depths
-    both = _sound(fine(surface, scene.patch, units, free, depths.sight, outlines))
-    if both is not None and _contradict(depths, both, np.median(scene.ridge.points_m, axis=0)):
-        if _windows(both, scene) >= THIN_WINDOWS:
-            return doubting(both, depths, CONTRADICTION_DOUBT)
-        inner = Sight(guard=INNER_GUARD)
-        both = _sound(fine(both.surface, scene.patch, units, free, inner, outlines))
-        depths = both and _sound(fine(both.surface, scene.patch, units, free, inner))
-    return None if both is None or depths is None else _doubted(scene, both, depths, units)
-
-
-def _windows(fit: RayFit, scene: Scene) -> float:
-    """How many matching windows half of an object is wide; infinite where errors are not alike."""
-    half_width_px = float(np.median(scene.ridge.width_m / scene.ridge.points_m[:, 2])) * scene.patch.focal_px / 2
-    window_px = WINDOW_OVER_CORRELATION * fit.likeness.length_px
-    return half_width_px / window_px if window_px > 0 else np.inf
-
-
-def _contradict(depths: RayFit, both: RayFit, place_m: Floats) -> bool:
-    """Whether depths alone are so sure of another radius at a place (3,) than the outline has that one misleads.
-
-    Depths whose limbs are left out already do not.
-    """
-    if not isinstance(depths.surface, Lateral) or not isinstance(both.surface, Lateral) or depths.sight.guard < 1:
-        return False
-    height_m = float(depths.surface.heights(place_m[None])[0])
-    alone_m, with_outline_m = (
-        one.radius_m + one.slope * float(one.heights(place_m[None])[0]) for one in (depths.surface, both.surface)
-    )
-    sizes = slice(depths.surface.size_place, None)
-    lever = np.array([1.0, height_m])[: len(depths.free[sizes])]
-    variance = float(lever @ depths.covariance[sizes, sizes] @ lever)
-    return (alone_m - with_outline_m) ** 2 > CONTRADICTED**2 * variance
-
-
-def _doubted(scene: Scene, both: RayFit, depths: RayFit, units: Floats) -> RayFit:
-    """A fit to depths and outline that doubts what the outline changes, and what the limbs as they are would change."""
-    doubted = doubting_outline(both, depths, _windows(both, scene))
-    if depths.sight.whole:
-        return doubted
-    whole = _sound(fine(both.surface, scene.patch, units, both.free, Sight(), both.outlines))
-    return doubted if whole is None else doubting(doubted, whole)
-
-
-def _sound(fit: RayFit | None) -> RayFit | None:
-    """A fit whose numbers are numbers."""
-    return fit if fit is not None and np.isfinite([fit.sigma, fit.surface.size_m]).all() else None
-
-
 def _like(lead: RayFit, scene: Scene, held: Held, surface: Surface) -> RayFit | None:
     """A surface fitted to the depths and the outline that the lead rests on.
 
@@ -195,12 +135,12 @@ def _like(lead: RayFit, scene: Scene, held: Held, surface: Surface) -> RayFit | 
     if len(lead.free) == len(free):
         return lead
     if not lead.outlines:
-        return _sound(fine(surface, scene.patch, units, free, lead.sight))
-    both = _sound(fine(surface, scene.patch, units, free, lead.sight, lead.outlines))
+        return sound(fine(surface, scene.patch, units, free, lead.sight))
+    both = sound(fine(surface, scene.patch, units, free, lead.sight, lead.outlines))
     if both is None or _credit(scene, lead, both) > _credit(scene, lead, lead) + OUT_OF_QUESTION:
         return both
-    depths = _sound(fine(surface, scene.patch, units, free, lead.sight))
-    return depths and _doubted(scene, both, depths, units)
+    depths = sound(fine(surface, scene.patch, units, free, lead.sight))
+    return depths and doubted(scene, both, depths, units)
 
 
 def _credit(scene: Scene, lead: RayFit, fit: RayFit) -> float:
