@@ -24,7 +24,7 @@ from rotrecon.stroke.correction import corrected
 from rotrecon.workspace import available
 
 THREADS = ThreadpoolController()
-MUCH_LESS_SURE = 3.0
+MUCH_LESS_SURE = 2.5
 """Width of a size's interval, over that of a first measurement, with which a second one is not believed."""
 
 

@@ -40,7 +40,7 @@ LOCAL_ERROR_PX = 0.09
 """What the steps of `CORRELATED_PX` err by together, however clear they are (measured on rendered pictures)."""
 LARGEST_ERROR_PX = 1.25
 """Of a single step, by its likelihood: with more, it may be anywhere among the places tried."""
-CAUTION = 1.5
+CAUTION = 1.35
 """Factor on the scatter: that of three colours, and of a texture which may run all along the outline."""
 
 
