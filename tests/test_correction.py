@@ -88,7 +88,7 @@ def test_whatever_was_found_a_corrected_stroke_lies_in_the_area(center, tilt, ro
 
 
 @pytest.mark.parametrize(
-    ("width", "doubts", "believed"), [(1.0, 0, True), (2.9, 0, True), (3.1, 0, False), (0.9, 1, True), (1.1, 1, False)]
+    ("width", "doubts", "believed"), [(1.0, 0, True), (2.4, 0, True), (2.6, 0, False), (0.9, 1, True), (1.1, 1, False)]
 )
 def test_a_second_measurement_that_knows_less_is_not_believed(monkeypatch, width, doubts, believed):
     """Such as one that no longer sees a side of the outline."""
