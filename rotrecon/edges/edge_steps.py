@@ -34,7 +34,7 @@ NARROWING_PX = (2.0, 1.0, OFF_PX, OFF_PX)
 """Distances up to which steps have a say in their line, at first of all places tried."""
 BEND_PRIOR = 0.05
 """Weight of no bend against all steps."""
-SYSTEMATIC_SHARE = 0.06
+SYSTEMATIC_SHARE = 0.05
 """Of the blur: what does not average out on rendered pictures, as shading is not linear, and blur no Gaussian."""
 LOCAL_ERROR_PX = 0.09
 """What the steps of `CORRELATED_PX` err by together, however clear they are (measured on rendered pictures)."""
