@@ -32,8 +32,9 @@ REACH_SHARE, LEAST_REACH_PX, MOST_REACH_PX = 0.25, 4.0, 10.0
 NEAR_REACH_PX, NEAR_SPREAD_PX = 2.5, 1.5
 """How far one is looked for from a surface which has followed edges already: 99 of 100 are nearer (measured on rendered
 pictures); and where they become unlikely."""
-CIRCLE_ARCS, ARC_POINTS = 4, 45
-"""Arcs of a ball's outline, each seen or not by itself, and the limb points of each."""
+FIRST_ARC, CIRCLE_ARCS, ARC_POINTS = 2, 4, 45
+"""Number of the first arc of a ball's outline, after the limbs 0 and 1 of other surfaces; arcs, each seen or not by
+itself; and the limb points of each."""
 
 
 @dataclass(frozen=True, eq=False)
@@ -45,7 +46,7 @@ class Limbs:
     normal_px: Floats
     """(n, 2) unit, away from the object."""
     side: Indices
-    """(n,) 0 or 1: to the left or the right along the axis; of a ball the number of the arc."""
+    """(n,) 0 or 1: to the left or the right along the axis; of a ball the number of the arc, 2 to 5."""
     along: Floats
     """(n,) height along the axis, m; of a ball the angle round the outline, rad."""
     depth_m: Floats
@@ -109,7 +110,7 @@ def _of_ball(ball: Ball) -> tuple[Floats, Floats, Indices, Floats]:
     across /= np.linalg.norm(across)
     round_about = np.cos(angle)[:, None] * across + np.sin(angle)[:, None] * np.cross(toward, across)
     normals = np.sqrt(1 - sine**2) * round_about - sine * toward
-    arc = np.repeat(np.arange(CIRCLE_ARCS, dtype=np.int32), ARC_POINTS)
+    arc = FIRST_ARC + np.repeat(np.arange(CIRCLE_ARCS, dtype=np.int32), ARC_POINTS)
     return ball.center_m + ball.radius_m * normals, normals, arc, angle
 
 
