@@ -16,7 +16,7 @@ NOTHING: dict[str, Any] = dict.fromkeys(
     [
         "margin", "diameter_mm", "interval_mm", "length_mm", "length_interval_mm", "ends", "center_m",
         "center_interval_mm", "axis", "axis_interval_deg", "half_angle_deg", "half_angle_interval_deg", "rms_mm",
-        "arc_deg", "parts", "inlier_share", "sigma_over_radius", "noise", "stereo", "tool", "contact",
+        "arc_deg", "parts", "inlier_share", "sigma_over_radius", "noise", "stereo", "stroke_px", "tool", "contact",
     ]
 )  # fmt: skip
 """The fields that are null where they are not known."""
@@ -26,7 +26,8 @@ def answer(result: Reconstruction) -> dict[str, Any]:
     """Fields and units as the README lists them; lengths in base coordinates. Holds no NaN and no arrays."""
     if isinstance(result.fit, FitFailure) or result.solid is None:
         advice = result.fit.advice if isinstance(result.fit, FitFailure) else ""
-        return cannot(advice, result.settings.method) | {"sections": _sections(result)}
+        known = {"sections": _sections(result), "stroke_px": _stroke(result)}
+        return cannot(advice, result.settings.method) | known
     fit, solid = result.fit, result.solid
     return {
         **NOTHING,
@@ -45,6 +46,7 @@ def answer(result: Reconstruction) -> dict[str, Any]:
         "rms_mm": _mm(fit.rms_m),
         "arc_deg": round(float(np.degrees(fit.arc_rad)), 1),
         "sections": _sections(result),
+        "stroke_px": _stroke(result),
         "tool": result.tool.tool.name if isinstance(result.tool, ToolProposal) else None,
         "contact": _contact(result.tool),
         "reasons": list(result.tool.reasons if isinstance(result.tool, NoTool) else result.tool.unsure),
@@ -68,6 +70,12 @@ def cannot(reason: str, method: str) -> dict[str, Any]:
         "frame": "base",
         "method": method,
     }
+
+
+def _stroke(result: Reconstruction) -> list[list[float]]:
+    """Start and end of what was measured along: the axis as it was drawn, put right or proposed."""
+    stroke = result.drawing.stroke
+    return [[float(value) for value in end] for end in (stroke.start_px, stroke.end_px)]
 
 
 def _intervals(intervals: Intervals | None) -> dict[str, Any]:

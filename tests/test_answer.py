@@ -22,8 +22,8 @@ OF_SOME_THINGS = ["length_interval_mm", "half_angle_interval_deg"]
 FIELDS = [
     "kind", "certain", "margin", "concave", "diameter_mm", "interval_mm", "length_mm", "length_interval_mm", "ends",
     "center_m", "center_interval_mm", "axis", "axis_interval_deg", "half_angle_deg", "half_angle_interval_deg",
-    "profile", "rms_mm", "arc_deg", "parts", "inlier_share", "sigma_over_radius", "noise", "stereo", "sections", "tool",
-    "contact", "reasons", "candidates", "frame", "method",
+    "profile", "rms_mm", "arc_deg", "parts", "inlier_share", "sigma_over_radius", "noise", "stereo", "sections",
+    "stroke_px", "tool", "contact", "reasons", "candidates", "frame", "method",
 ]  # fmt: skip
 
 
@@ -61,6 +61,18 @@ def test_cylinder_in_numbers(method):
     assert diameters == pytest.approx(80, rel=2e-3)
     assert np.ptp(along) < content["length_mm"] < 1.05 * np.ptp(along)
     assert sum(c["score"] for c in content["candidates"]) == pytest.approx(1, abs=1e-3)
+
+
+def test_what_was_measured_along_is_told_and_can_be_given_back():
+    body = cylinder(np.array([0, 0, 0.8]), np.array([0, 1.0, 0.3]), 0.08)
+    frame, drawing = exact_frame(body), drawing_along(body, 0.7)
+    first, last = np.array([drawing.stroke.start_px, drawing.stroke.end_px])
+    short = replace(drawing, axis=ObjectAxis(tuple(first), tuple(0.6 * first + 0.4 * last)))
+    told = answer(reconstruct(frame, short, ROBUST))
+    start, end = told["stroke_px"]
+    assert np.linalg.norm(np.subtract(end, start)) > 0.8 * np.linalg.norm(last - first)
+    again = replace(drawing, axis=ObjectAxis(tuple(start), tuple(end)))
+    assert answer(reconstruct(frame, again, ROBUST)) == told
 
 
 def test_paper_method_claims_no_certainty():
