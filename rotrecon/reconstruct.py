@@ -11,7 +11,8 @@ from rotrecon.calibration import with_calibration_error
 from rotrecon.circles import base_points
 from rotrecon.drawing import CrossSegments, Drawing, DrawingError, cut_sections
 from rotrecon.frame import Frame
-from rotrecon.outcome import Fit, FitFailure
+from rotrecon.outcome import Fit, FitFailure, Intervals
+from rotrecon.primitives import Frustum, Primitive
 from rotrecon.rays.patch import clear_depth
 from rotrecon.reconstruction import Reconstruction
 from rotrecon.sections.by_sections import by_sections
@@ -49,15 +50,27 @@ def reconstruct(frame: Frame, drawing: Drawing, settings: Settings) -> Reconstru
 def _bears_out(again: Reconstruction, first: Fit) -> bool:
     """Whether a second measurement found the same kind of thing, and either doubts it no more or knows its size better.
 
-    One that knows much less of its size has lost what the first rests on.
+    One that knows much less of its size has lost what the first rests on. Where several views have borne out the first,
+    which then hardly hangs on the stroke, a second that is outside its interval has lost its way.
     """
     if not isinstance(again.fit, Fit) or again.fit.intervals is None or first.intervals is None:
         return False
     width, first_width = again.fit.intervals.relative_width, first.intervals.relative_width
     if width > MUCH_LESS_SURE * first_width or (len(again.fit.doubts) > len(first.doubts) and width > first_width):
         return False
+    if again.frame.views and not _within(again.fit.solid, first.intervals):
+        return False
     kinds = {again.fit.solid.kind, first.solid.kind}
     return len(kinds) == 1 or kinds == {"cylinder", "rod"}
+
+
+def _within(solid: Primitive, intervals: Intervals) -> bool:
+    """Whether the half angle of a cone, whose diameter hangs on where its middle is, or else the diameter is inside."""
+    if isinstance(solid, Frustum) and intervals.half_angle_rad is not None:
+        low, high = intervals.half_angle_rad
+        return low <= solid.half_angle_rad <= high
+    low, high = intervals.diameter_m
+    return low <= 2 * float(solid.radius_at(0.0)) <= high
 
 
 def _measured(frame: Frame, drawing: Drawing, settings: Settings) -> Reconstruction:

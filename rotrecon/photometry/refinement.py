@@ -29,6 +29,8 @@ SHARP_SHARE = 0.3
 FARTHEST_PX = 4.0
 """Pictures are matched to a fraction of a pixel; a surface that moves by more has lost its way, but for a plain one,
 whose depth is anyhow that of its shading."""
+MOST_CHANGED = 0.4
+"""Share of its radius by which another has lost its way too, however few pixels wide it is."""
 AGREEING_SHARE = 0.75
 """Of the pixels, how many must agree in brightness for a surface to be where it is said to be."""
 UNSURE = 0.1
@@ -102,6 +104,7 @@ def refined(one: Ranked, scene: Scene, others: tuple[Other, ...]) -> Refinement 
         return None
     size = fit.surface.size_place
     near = moved_px(fit.surface, climbed.surface, scene.patch, others) < FARTHEST_PX
+    near &= abs(climbed.surface.size_m - fit.surface.size_m) < MOST_CHANGED * climbed.surface.size_m
     refinement = _finished(one, fit, climbed, scene, by_depth=near)
     by_outline = refinement.textured < PLAIN and refinement.held
     if not near and not by_outline:
