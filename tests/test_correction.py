@@ -10,6 +10,7 @@ from hypothesis import strategies as st
 
 from app.bench.accuracy.misdrawn import STROKES, misdrawn, width_px
 from rotrecon.drawing import Constraints, Drawing, ObjectAxis, area_mask
+from rotrecon.frame import View
 from rotrecon.outcome import Fit, Intervals
 from rotrecon.primitives import Frustum, Sphere
 from rotrecon.reconstruct import reconstruct
@@ -87,26 +88,53 @@ def test_whatever_was_found_a_corrected_stroke_lies_in_the_area(center, tilt, ro
         assert area_mask(drawing.area, SIZE)[row, column].all()
 
 
+SCENE = simulate("pipe", 0, noise=None, supersampling=0)
+VIEW = View(SCENE.frame.image, SCENE.frame.camera, SCENE.frame.T_base_camera)
+
+
+def measured(solid: Frustum, relative: float, doubts: int = 0, views: tuple[View, ...] = ()) -> Reconstruction:
+    """A result with an interval of a width, over the size."""
+    fit, size_m, angle_rad = fit_of(solid), 2 * solid.radius_m, solid.half_angle_rad
+    angles_rad = (angle_rad * (1 - relative / 2), angle_rad * (1 + relative / 2)) if angle_rad else None
+    intervals = Intervals((size_m * (1 - relative / 2), size_m * (1 + relative / 2)), 0.001, half_angle_rad=angles_rad)
+    frame = replace(SCENE.frame, views=views)
+    plain = reconstruct(SCENE.frame, SCENE.drawing, Settings(method="paper"))
+    return replace(plain, frame=frame, fit=replace(fit, intervals=intervals, doubts=("a reason",) * doubts))
+
+
+def of_two(monkeypatch: pytest.MonkeyPatch, *answers: Reconstruction) -> Fit:
+    """What is said where a careless stroke and the one put right have these answers."""
+    given = iter(answers)
+    monkeypatch.setattr("rotrecon.reconstruct._measured", lambda *_: next(given))
+    monkeypatch.setattr("rotrecon.reconstruct.corrected", lambda *_: SCENE.drawing.stroke)
+    short = misdrawn(SCENE.drawing, width_px(SCENE.drawing), SIZE)["axis 30 % short"]
+    found = reconstruct(SCENE.frame, short, Settings()).fit
+    assert isinstance(found, Fit)
+    return found
+
+
 @pytest.mark.parametrize(
     ("width", "doubts", "believed"), [(1.0, 0, True), (2.4, 0, True), (2.6, 0, False), (0.9, 1, True), (1.1, 1, False)]
 )
 def test_a_second_measurement_that_knows_less_is_not_believed(monkeypatch, width, doubts, believed):
     """Such as one that no longer sees a side of the outline."""
+    pipe = SOLIDS["pipe"]
+    first, second = measured(pipe, 0.02), measured(replace(pipe, radius_m=0.0505), 0.02 * width, doubts)
+    assert (of_two(monkeypatch, first, second).solid.radius_m == 0.0505) == believed
 
-    def measured(mm: float, relative: float, doubts: int) -> Reconstruction:
-        solid = replace(SOLIDS["pipe"], radius_m=mm / 2000)
-        intervals = Intervals((mm / 1000 * (1 - relative / 2), mm / 1000 * (1 + relative / 2)), 0.001)
-        return replace(result, fit=replace(fit_of(solid), intervals=intervals, doubts=("a reason",) * doubts))
 
-    scene = simulate("pipe", 0, noise=None, supersampling=0)
-    short = misdrawn(scene.drawing, width_px(scene.drawing), SIZE)["axis 30 % short"]
-    result = reconstruct(scene.frame, scene.drawing, Settings())
-    answers = iter([measured(100, 0.02, 0), measured(101, 0.02 * width, doubts)])
-    monkeypatch.setattr("rotrecon.reconstruct._measured", lambda *_: next(answers))
-    monkeypatch.setattr("rotrecon.reconstruct.corrected", lambda *_: scene.drawing.stroke)
-    found = reconstruct(scene.frame, short, Settings()).fit
-    assert isinstance(found, Fit)
-    assert (found.solid.radius_m == 0.0505) == believed
+@pytest.mark.parametrize("views", [(), (VIEW, VIEW)], ids=["depth", "views"])
+@pytest.mark.parametrize("off", [0.9, 1.1])
+@pytest.mark.parametrize("name", ["pipe", "cone"])
+def test_from_several_views_a_second_measurement_has_to_be_within_the_first(monkeypatch, name, off, views):
+    solid, half = SOLIDS[name], 0.01
+    other = (
+        replace(solid, half_angle_rad=solid.half_angle_rad * (1 + off * half), radius_m=0.07)
+        if name == "cone"
+        else replace(solid, radius_m=solid.radius_m * (1 + off * half))
+    )
+    found = of_two(monkeypatch, measured(solid, 2 * half, views=views), measured(other, 2 * half, views=views))
+    assert (found.solid == other) == (off < 1 or not views)
 
 
 def test_an_object_is_measured_as_if_a_short_stroke_had_been_drawn_over_all_of_it():

@@ -102,3 +102,12 @@ def test_the_whole_path_is_closer_with_the_pictures_than_without(views):
     low, high = result.fit.intervals.diameter_m
     assert low <= 2 * one.surface.size_m <= high
     assert abs(error) < (0.006 if views else 0.05)
+
+
+@pytest.mark.parametrize(("share", "kept"), [(0.9, True), (0.5, False)])
+def test_a_fit_whose_size_the_pictures_change_by_much_was_no_start(share, kept):
+    one = pair(LEG, "fine", 1)
+    scene = one.scene()
+    narrow = replace(one.surface, radius_m=share * one.surface.size_m)
+    found = refined(Ranked("cylinder", narrow, one.fit_from(scene, narrow), 0.0), scene, others_of(one.frame))
+    assert (found is not None) == kept
