@@ -48,7 +48,7 @@ PLAIN_PERCENT = 3.0
 
 
 def table2_document(plan: Plan | None = None, processes: int | None = None) -> str:
-    """The document; half an hour of work on two cores unless a smaller plan is named."""
+    """The document; a quarter of an hour of work on two cores unless a smaller plan is named."""
     plan = plan or Plan()
     found = trials(plan, processes)
     sizes, goals = _sizes(found, plan)
