@@ -24,7 +24,7 @@ def bench(
         Path | None, typer.Option(metavar="OUT.md", help="Write how accurate the program is; takes half an hour.")
     ] = None,
     table2: Annotated[
-        Path | None, typer.Option(metavar="OUT.md", help="Write the paper's table 2 again; takes half an hour.")
+        Path | None, typer.Option(metavar="OUT.md", help="Write the paper's table 2 again; takes a quarter of an hour.")
     ] = None,
     door: Annotated[
         bool, typer.Option("--door", help="Twenty pages, 2,000 drawings and 1,000 forged messages; takes six minutes.")
