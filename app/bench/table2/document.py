@@ -112,9 +112,9 @@ def _introduction(plan: Plan) -> str:
   x = {", ".join(f"{x:g}" for x in BASELINES_M)} m; two of them are the first two. Only what lies within
   {AROUND_PX:g} px of the object is rendered.
 - **Scenes**: {plan.poses} poses of each object with each texture, seeds {plan.first_seed} to
-  {plan.first_seed + plan.poses - 1}, on which nothing was tuned; {DISTANCE_M[0]} to {DISTANCE_M[1]} m away, in front of
-  a wall. Textures are fine, coarse and weak; {min(PLAIN_POSES, plan.poses)} poses are plain: one colour, only shading
-  and an edge.
+  {plan.first_seed + plan.poses - 1}, on which nothing was tuned but when a fit or a second measurement is not believed;
+  {DISTANCE_M[0]} to {DISTANCE_M[1]} m away, in front of a wall. Textures are fine, coarse and weak;
+  {min(PLAIN_POSES, plan.poses)} poses are plain: one colour, only shading and an edge.
 - **The whole path**: the pictures and the poses are all that is given. The area is drawn with every corner and both
   ends of the stroke moved by 3 px at random, the kind is not told. Every method measures the same matched depth;
   `robust` then goes back to the pictures.

@@ -18,7 +18,7 @@ from rotrecon.simulation.stereo import simulate_views
 from rotrecon.simulation.surfaces import Texture
 
 POSES, FIRST_SEED = 20, 5000
-"""Of each object with each texture; seeds that nothing was tuned on."""
+"""Of each object with each texture; seeds that hardly anything was tuned on."""
 BASELINES_M = (0.0, 0.1, 0.2, 0.3)
 VIEW_COUNTS = (2, 4)
 TEXTURED: tuple[Texture, ...] = ("fine", "coarse", "weak")
