@@ -82,8 +82,8 @@ class Settings:
     covered_length: float = 0.7
     """Share of the object's length that a cylinder or a cone must explain not to be a part of something longer."""
     turned_sigma: float = 0.6
-    """Residuals of a general surface of revolution over those of a cylinder or cone that it takes the place of: a tenth
-    for a bottle, 0.7 for a bowl whose wall bends a little."""
+    """Residuals of a general surface of revolution over those of a cylinder or cone that it takes the place of: 0.2 for
+    a vase, 0.7 for a bowl whose wall bends a little."""
     turned_inlier_share: float = 0.85
     """Of the depths inside the outline, those that must agree with a general surface of revolution."""
     excluded_cost: float = 4.6

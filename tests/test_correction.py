@@ -89,6 +89,7 @@ def test_whatever_was_found_a_corrected_stroke_lies_in_the_area(center, tilt, ro
 
 
 SCENE = simulate("pipe", 0, noise=None, supersampling=0)
+RESULT = reconstruct(SCENE.frame, SCENE.drawing, Settings(method="paper"))
 VIEW = View(SCENE.frame.image, SCENE.frame.camera, SCENE.frame.T_base_camera)
 
 
@@ -97,9 +98,8 @@ def measured(solid: Frustum, relative: float, doubts: int = 0, views: tuple[View
     fit, size_m, angle_rad = fit_of(solid), 2 * solid.radius_m, solid.half_angle_rad
     angles_rad = (angle_rad * (1 - relative / 2), angle_rad * (1 + relative / 2)) if angle_rad else None
     intervals = Intervals((size_m * (1 - relative / 2), size_m * (1 + relative / 2)), 0.001, half_angle_rad=angles_rad)
-    frame = replace(SCENE.frame, views=views)
-    plain = reconstruct(SCENE.frame, SCENE.drawing, Settings(method="paper"))
-    return replace(plain, frame=frame, fit=replace(fit, intervals=intervals, doubts=("a reason",) * doubts))
+    fit = replace(fit, intervals=intervals, doubts=("a reason",) * doubts)
+    return replace(RESULT, frame=replace(SCENE.frame, views=views), fit=fit)
 
 
 def of_two(monkeypatch: pytest.MonkeyPatch, *answers: Reconstruction) -> Fit:
@@ -128,11 +128,10 @@ def test_a_second_measurement_that_knows_less_is_not_believed(monkeypatch, width
 @pytest.mark.parametrize("name", ["pipe", "cone"])
 def test_from_several_views_a_second_measurement_has_to_be_within_the_first(monkeypatch, name, off, views):
     solid, half = SOLIDS[name], 0.01
-    other = (
-        replace(solid, half_angle_rad=solid.half_angle_rad * (1 + off * half), radius_m=0.07)
-        if name == "cone"
-        else replace(solid, radius_m=solid.radius_m * (1 + off * half))
-    )
+    by = 1 + off * half
+    # a cone's diameter hangs on where its middle is
+    radius_m = 0.07 if name == "cone" else by * solid.radius_m
+    other = replace(solid, half_angle_rad=by * solid.half_angle_rad, radius_m=radius_m)
     found = of_two(monkeypatch, measured(solid, 2 * half, views=views), measured(other, 2 * half, views=views))
     assert (found.solid == other) == (off < 1 or not views)
 

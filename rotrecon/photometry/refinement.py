@@ -30,7 +30,7 @@ FARTHEST_PX = 4.0
 """Pictures are matched to a fraction of a pixel; a surface that moves by more has lost its way, but for a plain one,
 whose depth is anyhow that of its shading."""
 MOST_CHANGED = 0.4
-"""Share of its radius by which another has lost its way too, however few pixels wide it is."""
+"""Share of its radius by which one that had another has lost its way too: a thin thing's is few pixels."""
 AGREEING_SHARE = 0.75
 """Of the pixels, how many must agree in brightness for a surface to be where it is said to be."""
 UNSURE = 0.1

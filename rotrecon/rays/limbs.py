@@ -195,13 +195,13 @@ def seen_outline(
 
 
 def edges_at(limbs: Limbs, surface: Surface, patch: Patch, followed: bool = False) -> SeenOutline:
-    """The edges in a patch's picture near limb points of a surface."""
+    """The edges in a patch's picture near limb points of a surface, the nearer if it has `followed` edges before."""
     if len(limbs.side) < FEWEST_LIMBS:
         return NOTHING_SEEN
     radius_m = surface.radius_m + surface.slope * limbs.along if isinstance(surface, Lateral) else surface.radius_m
     half_width_px = radius_m / limbs.depth_m * patch.focal_px
-    reach_px = float(np.clip(REACH_SHARE * np.median(half_width_px), LEAST_REACH_PX, MOST_REACH_PX))
-    reach_px, spread_px = (NEAR_REACH_PX, NEAR_SPREAD_PX) if followed else (reach_px, None)
+    far_px = float(np.clip(REACH_SHARE * np.median(half_width_px), LEAST_REACH_PX, MOST_REACH_PX))
+    reach_px, spread_px = (NEAR_REACH_PX, NEAR_SPREAD_PX) if followed else (far_px, None)
     found = find_edges(patch.image, limbs.point_px, limbs.normal_px, reach_px, half_width_px, limbs.side, spread_px)
     trusted = {
         int(number): side for number, side in zip(np.unique(limbs.side), found.sides, strict=True) if side.trusted
